@@ -1,0 +1,49 @@
+/// \file
+/// What every command shares: where to talk, how to stop, which exit code says what.
+#pragma once
+
+#include "core/progress.h"
+#include "core/result.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <stop_token>
+#include <string>
+
+namespace cagewright::cli {
+
+enum ExitCode : int {
+  done = 0,          ///< the command did what was asked
+  could_not = 1,     ///< the input was fine, the answer is no: an invalid cage, no cage found
+  bad_input = 2,     ///< misused options, or files that cannot be read or written
+  interrupted = 130, ///< stopped by Ctrl-C
+};
+
+/// One run of the program. A command's parser callback sets `run`; main() calls it.
+struct Session {
+  std::function<int()> run;
+  std::stop_source stop;
+  int threads = 0;    ///< 0: all cores
+  bool quiet = false; ///< no progress and no summary on the terminal
+
+  /// Shows a line of progress on stderr when that is a terminal; stops on Ctrl-C.
+  [[nodiscard]] Progress progress() const;
+};
+
+/// Prints "cagewright: <message>" on stderr and returns the exit code that goes with the error.
+int fail(const Error& error);
+
+/// Opens a file that appears under its name only when it is complete: writes `text` beside it,
+/// then renames.
+Status write_text_file(const std::string& path, const std::string& text);
+
+// One function for each command, in cli/commands/<name>.cpp: it declares the options and what to
+// run. The order is that of --help.
+#define CAGEWRIGHT_COMMANDS(X) \
+  X(info)
+#define CAGEWRIGHT_DECLARE(name) void add_##name(CLI::App& app, Session& session);
+CAGEWRIGHT_COMMANDS(CAGEWRIGHT_DECLARE)
+#undef CAGEWRIGHT_DECLARE
+
+} // namespace cagewright::cli

@@ -1,0 +1,25 @@
+# One INTERFACE target that our own targets link privately. Nothing here reaches
+# a project that merely uses the library.
+set(CAGEWRIGHT_SANITIZE "" CACHE STRING "Sanitizers to build with, e.g. address,undefined")
+option(CAGEWRIGHT_WERROR "Treat our own warnings as errors" OFF)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release or RelWithDebInfo" FORCE)
+endif()
+
+find_program(CAGEWRIGHT_CCACHE ccache)
+if(CAGEWRIGHT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CAGEWRIGHT_CCACHE})
+endif()
+
+add_library(cagewright_compiler INTERFACE)
+target_compile_features(cagewright_compiler INTERFACE cxx_std_20)
+target_compile_options(cagewright_compiler INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+  -ffp-contract=off  # the same bits on every compiler
+  $<$<BOOL:${CAGEWRIGHT_WERROR}>:-Werror>)
+if(CAGEWRIGHT_SANITIZE)
+  target_compile_options(cagewright_compiler INTERFACE
+    -fsanitize=${CAGEWRIGHT_SANITIZE} -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_link_options(cagewright_compiler INTERFACE -fsanitize=${CAGEWRIGHT_SANITIZE})
+endif()

@@ -1,0 +1,43 @@
+# cagewright_add_module(NAME mesh HEADERS ... SOURCES ... USES core ... [LINKS Eigen3::Eigen] [PRIVATE_LINKS ...])
+#
+# One folder, one target: cagewright::NAME, built from src/NAME. HEADERS is the
+# public surface, installed as <NAME/header.h>; each header is also compiled on its own
+# by the target all_verify_interface_header_sets. LINKS are libraries that the headers need,
+# PRIVATE_LINKS those that only the sources need.
+function(cagewright_add_module)
+  cmake_parse_arguments(PARSE_ARGV 0 M "" "NAME" "HEADERS;SOURCES;USES;LINKS;PRIVATE_LINKS")
+  set(kind STATIC)
+  set(scope PUBLIC)
+  if(NOT M_SOURCES)
+    set(kind INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(cagewright_${M_NAME} ${kind} ${M_SOURCES})
+  add_library(cagewright::${M_NAME} ALIAS cagewright_${M_NAME})
+  target_sources(cagewright_${M_NAME} ${scope}
+    FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${M_HEADERS})
+  set_target_properties(cagewright_${M_NAME} PROPERTIES
+    VERIFY_INTERFACE_HEADER_SETS ON EXPORT_NAME ${M_NAME} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(cagewright_${M_NAME} ${scope} cxx_std_20)
+  list(TRANSFORM M_USES PREPEND cagewright::)
+  target_link_libraries(cagewright_${M_NAME} ${scope} ${M_USES} ${M_LINKS})
+  if(M_SOURCES)
+    target_link_libraries(cagewright_${M_NAME} PRIVATE $<BUILD_INTERFACE:cagewright_compiler> ${M_PRIVATE_LINKS})
+  endif()
+  install(TARGETS cagewright_${M_NAME} EXPORT cagewright
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cagewright)
+endfunction()
+
+# cagewright_add_tests(mesh FILES topology_test.cpp ... USES mesh ...): one program per folder of
+# tests, mesh_test, built from tests/mesh; each case is a test of its own for ctest.
+function(cagewright_add_tests name)
+  cmake_parse_arguments(PARSE_ARGV 1 T "" "" "FILES;USES;LINKS")
+  list(TRANSFORM T_USES PREPEND cagewright::)
+  add_executable(${name}_test ${T_FILES})
+  target_link_libraries(${name}_test PRIVATE
+    cagewright_compiler cagewright_test_support ${T_USES} ${T_LINKS} GTest::gtest_main)
+  gtest_discover_tests(${name}_test TEST_PREFIX ${name}.
+    DISCOVERY_TIMEOUT 120 # the default of 5 s is short for a sanitizer build on a busy machine
+    PROPERTIES LABELS ${name} TIMEOUT 600)
+endfunction()
