@@ -1,0 +1,283 @@
+#include "slicing/box_tree.h"
+
+#include "core/parallel.h"
+#include "slicing/tight_box.h"
+#include "slicing/volume_rule.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace cagewright {
+namespace {
+
+/// No cut leaves fewer slices than this on either side, whatever the box's length ...
+constexpr int least_margin = 2;
+/// ... nor less than this part of its length: a sliver box helps nobody.
+constexpr double margin_fraction = 0.05;
+
+/// What a cut would make of a box.
+struct Candidate {
+  Cut cut;
+  std::vector<std::vector<std::uint32_t>> parts;
+  std::vector<OrientedBox> boxes;
+  double volume = 0;
+};
+
+class TreeBuilder {
+public:
+  TreeBuilder(const VoxelGrid& grid, const SlicingOptions& options)
+      : grid_(grid), options_(options),
+        owners_{std::vector<std::uint32_t>(grid.kinds.size(), VoxelOwners::none),
+                std::vector<std::uint32_t>(grid.kinds.size(), 0)} {}
+
+  Result<BoxTree> build(const Progress& progress) {
+    if (!add_root()) {
+      return Error{ErrorCode::unfit_model, "the model occupies no voxel"};
+    }
+    std::vector<int> fresh = {0};
+    while (!fresh.empty()) {
+      if (progress.cancelled()) {
+        return Error::cancelled();
+      }
+      progress(share_done(), "cutting boxes");
+      examine(fresh);
+      fresh = cut_next();
+    }
+    return std::move(tree_);
+  }
+
+private:
+  bool add_root() {
+    BoxNode root;
+    for (std::size_t v = 0; v < grid_.kinds.size(); ++v) {
+      if (grid_.occupied(v)) {
+        root.voxels.push_back(static_cast<std::uint32_t>(v));
+      }
+    }
+    if (root.voxels.empty()) {
+      return false;
+    }
+    root.box = tight_box(grid_, root.voxels, fit(), grid_.axes, padding());
+    owners_.assign(root.voxels, 0);
+    tree_.nodes.push_back(std::move(root));
+    candidates_.emplace_back();
+    return true;
+  }
+
+  [[nodiscard]] BoxFit fit() const {
+    return options_.rule == SlicingRule::volume ? BoxFit::smallest : BoxFit::pca;
+  }
+  [[nodiscard]] double padding() const { return options_.padding * grid_.size; }
+
+  [[nodiscard]] double share_done() const {
+    return options_.depth > 0 ? static_cast<double>(tree_.nodes.back().depth) / options_.depth : 1;
+  }
+
+  /// Finds the f and the best cut of each new node. Nodes write only their own entries.
+  void examine(const std::vector<int>& fresh) {
+    parallel_for(0, fresh.size(), 1, [&](std::size_t n) {
+      const auto at = static_cast<std::size_t>(fresh[n]);
+      BoxNode& node = tree_.nodes[at];
+      parallel_for(0, 3, 1, [&](std::size_t axis) {
+        node.sections[axis] = cross_section(grid_, owners_, static_cast<std::uint32_t>(at), node.box,
+                                            static_cast<int>(axis), options_.cross_section);
+      });
+      node.prismatic_ratio =
+          prismatic_ratio(node.sections[0], static_cast<std::size_t>(margin_of(node)));
+      node.cube_ratio = cube_ratio(node.box);
+      candidates_[at] = best_cut(at, node.stop);
+    });
+  }
+
+  [[nodiscard]] int margin_of(const BoxNode& node) const {
+    const double slices = 2 * node.box.half[0] / grid_.size;
+    return std::max(least_margin, static_cast<int>(margin_fraction * slices));
+  }
+
+  std::optional<Candidate> best_cut(std::size_t at, StopReason& stop) const {
+    const BoxNode& node = tree_.nodes[at];
+    if (node.depth >= options_.depth) {
+      stop = StopReason::depth;
+      return std::nullopt;
+    }
+    if (node.prismatic_ratio > options_.eta && node.cube_ratio > options_.zeta) {
+      stop = StopReason::prismatic;
+      return std::nullopt;
+    }
+    return options_.rule == SlicingRule::volume ? best_by_volume(at, stop)
+                                                : best_by_jump(at, stop);
+  }
+
+  std::optional<Candidate> best_by_volume(std::size_t at, StopReason& stop) const {
+    const BoxNode& node = tree_.nodes[at];
+    const std::vector<CutPlane> planes =
+        volume_cuts(grid_, owners_, static_cast<std::uint32_t>(at), node.voxels, node.box,
+                    {.split_parts = options_.split_parts, .margin = margin_of(node)});
+    std::vector<std::optional<Candidate>> tried(planes.size());
+    parallel_for(0, planes.size(), 1, [&](std::size_t p) { tried[p] = carve(at, planes[p]); });
+    std::optional<Candidate> best;
+    for (std::optional<Candidate>& candidate : tried) {
+      if (candidate && (!best || candidate->volume < best->volume)) {
+        best = std::move(candidate);
+      }
+    }
+    stop = !best ? StopReason::too_small : StopReason::cut;
+    if (best && best->cut.gain < options_.min_gain) {
+      stop = StopReason::no_gain;
+      return std::nullopt;
+    }
+    return best;
+  }
+
+  std::optional<Candidate> best_by_jump(std::size_t at, StopReason& stop) const {
+    const BoxNode& node = tree_.nodes[at];
+    const std::optional<PublishedCut> found =
+        published_cut(node.box, node.sections,
+                      {.min_jump = options_.min_jump, .margin = margin_of(node),
+                       .no_jump = options_.no_jump});
+    if (!found) {
+      stop = options_.no_jump == NoJump::skip ? StopReason::no_jump : StopReason::too_small;
+      return std::nullopt;
+    }
+    std::optional<Candidate> candidate = carve(at, found->plane);
+    stop = candidate ? StopReason::cut : StopReason::too_small;
+    if (candidate) {
+      candidate->cut.jump = found->jump;
+      candidate->cut.middle = found->middle;
+    }
+    return candidate;
+  }
+
+  /// The parts and boxes that a plane makes of a node; nothing when it cuts nothing off.
+  [[nodiscard]] std::optional<Candidate> carve(std::size_t at, const CutPlane& plane) const {
+    const BoxNode& node = tree_.nodes[at];
+    Candidate candidate;
+    candidate.parts = partition(grid_, owners_, static_cast<std::uint32_t>(at), node.voxels,
+                                node.box, plane, options_.split_parts);
+    if (candidate.parts.size() < 2) {
+      return std::nullopt;
+    }
+    for (const std::vector<std::uint32_t>& part : candidate.parts) {
+      candidate.boxes.push_back(tight_box(grid_, part, fit(), node.box.axes, padding()));
+      candidate.volume += candidate.boxes.back().volume();
+    }
+    const Vec3 normal = node.box.axes.col(plane.axis);
+    candidate.cut.plane = plane;
+    candidate.cut.normal = normal;
+    candidate.cut.point = node.box.center + plane.offset * normal;
+    candidate.cut.gain = 1 - candidate.volume / node.box.volume();
+    return candidate;
+  }
+
+  /// Carries out the cuts that are due: all of them, or while the number of boxes is limited the
+  /// one that saves the most volume.
+  std::vector<int> cut_next() {
+    std::vector<std::size_t> due;
+    for (std::size_t at = 0; at < candidates_.size(); ++at) {
+      if (candidates_[at]) {
+        due.push_back(at);
+      }
+    }
+    std::vector<int> fresh;
+    if (options_.max_boxes <= 0) {
+      for (const std::size_t at : due) {
+        perform(at, fresh);
+      }
+      return fresh;
+    }
+    std::stable_sort(due.begin(), due.end(), [&](std::size_t a, std::size_t b) {
+      return saving(a) > saving(b);
+    });
+    for (const std::size_t at : due) {
+      const auto boxes = static_cast<int>(tree_.cover().size() + candidates_[at]->parts.size()) - 1;
+      if (boxes <= options_.max_boxes) {
+        perform(at, fresh);
+        return fresh;
+      }
+      tree_.nodes[at].stop = StopReason::max_boxes;
+      candidates_[at].reset();
+    }
+    return fresh;
+  }
+
+  [[nodiscard]] double saving(std::size_t at) const {
+    return candidates_[at]->cut.gain * tree_.nodes[at].box.volume();
+  }
+
+  void perform(std::size_t at, std::vector<int>& fresh) {
+    Candidate candidate = std::move(*candidates_[at]);
+    candidates_[at].reset();
+    tree_.nodes[at].cut = candidate.cut;
+    tree_.nodes[at].stop = StopReason::cut;
+    for (std::size_t p = 0; p < candidate.parts.size(); ++p) {
+      const auto index = static_cast<int>(tree_.nodes.size());
+      BoxNode child;
+      child.parent = static_cast<int>(at);
+      child.depth = tree_.nodes[at].depth + 1;
+      child.box = candidate.boxes[p];
+      child.voxels = std::move(candidate.parts[p]);
+      owners_.assign(child.voxels, static_cast<std::uint32_t>(index));
+      tree_.nodes[at].children.push_back(index);
+      tree_.nodes.push_back(std::move(child));
+      candidates_.emplace_back();
+      fresh.push_back(index);
+    }
+  }
+
+  const VoxelGrid& grid_;
+  const SlicingOptions& options_;
+  VoxelOwners owners_;
+  BoxTree tree_;
+  std::vector<std::optional<Candidate>> candidates_; // for each node the cut it waits for
+};
+
+} // namespace
+
+std::string_view name_of(StopReason reason) {
+  switch (reason) {
+  case StopReason::cut:
+    return "cut";
+  case StopReason::depth:
+    return "depth";
+  case StopReason::too_small:
+    return "too_small";
+  case StopReason::prismatic:
+    return "prismatic";
+  case StopReason::no_jump:
+    return "no_jump";
+  case StopReason::no_gain:
+    return "no_gain";
+  case StopReason::max_boxes:
+    return "max_boxes";
+  }
+  return "unknown";
+}
+
+std::string_view name_of(SlicingRule rule) {
+  return rule == SlicingRule::volume ? "volume" : "published";
+}
+
+std::vector<int> BoxTree::cover(int depth) const {
+  std::vector<int> nodes_at;
+  for (std::size_t at = 0; at < nodes.size(); ++at) {
+    const BoxNode& node = nodes[at];
+    if (depth < 0 ? node.children.empty()
+                  : node.depth == depth || (node.depth < depth && node.children.empty())) {
+      nodes_at.push_back(static_cast<int>(at));
+    }
+  }
+  return nodes_at;
+}
+
+Result<BoxTree> build_box_tree(const VoxelGrid& grid, const SlicingOptions& options,
+                               const Progress& progress) {
+  if (options.depth < 0 || options.depth > 20) {
+    return Error{ErrorCode::invalid_option, "depth must be from 0 to 20"};
+  }
+  if (!(options.eta > 0) || !(options.zeta > 0)) {
+    return Error{ErrorCode::invalid_option, "eta and zeta must be above 0"};
+  }
+  return TreeBuilder(grid, options).build(progress);
+}
+
+} // namespace cagewright
