@@ -1,0 +1,69 @@
+#include "io/mesh_format.h"
+
+#include "io/binary.h"
+#include "io/off_header.h"
+#include "io/text_cursor.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace cagewright {
+namespace {
+
+// A binary STL file has no mark, but its size follows from the count of facets after the header. A
+// text that meets this by chance would have 27 GB.
+bool has_the_size_of_binary_stl(std::string_view bytes) {
+  return bytes.size() > 84 &&
+         bytes.size() == 84 + std::size_t{50} * load<std::uint32_t>(bytes.data() + 80);
+}
+
+} // namespace
+
+std::optional<MeshFormat> format_of_name(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  struct Known {
+    std::string_view extension;
+    MeshFormat format;
+  };
+  constexpr Known known[] = {{".obj", MeshFormat::obj}, {".ply", MeshFormat::ply},
+                             {".stl", MeshFormat::stl}, {".off", MeshFormat::off},
+                             {".glb", MeshFormat::gltf}, {".gltf", MeshFormat::gltf}};
+  for (const Known& kind : known) {
+    if (extension == kind.extension) {
+      return kind.format;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<MeshFormat> format_of_content(std::string_view bytes) {
+  if (bytes.starts_with("glTF")) {
+    return MeshFormat::gltf;
+  }
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) {
+    return MeshFormat::ply;
+  }
+  if (has_the_size_of_binary_stl(bytes)) {
+    return MeshFormat::stl;
+  }
+  TextCursor cursor(Source{{}, bytes.substr(0, 4096)}); // comments may stand first, but not forever
+  if (!cursor.next_word_of_file()) {
+    return std::nullopt;
+  }
+  const std::string_view word = cursor.word();
+  if (off_header(word)) {
+    return MeshFormat::off;
+  }
+  if (word == "solid" || word == "SOLID") {
+    return MeshFormat::stl;
+  }
+  if (word.starts_with('{')) {
+    return MeshFormat::gltf;
+  }
+  return std::nullopt;
+}
+
+} // namespace cagewright

@@ -1,0 +1,101 @@
+#include "io/read_mesh.h"
+
+#include "io/read_file.h"
+#include "io/readers.h"
+#include "io/source.h"
+
+#include <algorithm>
+#include <new>
+#include <string>
+
+namespace cagewright {
+namespace {
+
+Result<PolygonMesh> read_as(MeshFormat format, const Source& source) {
+  if (source.bytes.empty()) {
+    return source.error("the file is empty; export the model again");
+  }
+  try {
+    switch (format) {
+    case MeshFormat::obj:
+      return read_obj(source);
+    case MeshFormat::off:
+      return read_off(source);
+    case MeshFormat::ply:
+    case MeshFormat::stl:
+    case MeshFormat::gltf:
+      break;
+    }
+  } catch (const std::bad_alloc&) {
+    return source.error("there is not enough memory for the mesh; simplify the model",
+                        ErrorCode::too_large);
+  }
+  return source.error("cannot be read", ErrorCode::unsupported);
+}
+
+// What people have at hand besides meshes, by the first bytes.
+Error not_a_mesh(const Source& source) {
+  struct Known {
+    std::string_view begin;
+    std::string_view name;
+    std::string_view remedy;
+  };
+  constexpr Known known[] = {
+      {"\x1f\x8b", "a gzip archive", "unpack it first"},
+      {"PK\x03\x04", "a zip archive", "unpack it first"},
+      {"Kaydara FBX", "an FBX file", "export the model as OBJ or GLB"},
+      {"; FBX", "an FBX file", "export the model as OBJ or GLB"},
+      {"BLENDER", "a Blender file", "export the model as OBJ or GLB"},
+      {"\xff\xfe", "a text in UTF-16", "save it as UTF-8"},
+      {"<?xml", "an XML file", "export the model as OBJ or GLB"},
+  };
+  for (const Known& kind : known) {
+    if (source.bytes.starts_with(kind.begin)) {
+      return source.error("is " + std::string(kind.name) + "; " + std::string(kind.remedy),
+                          ErrorCode::unsupported);
+    }
+  }
+  return source.error("is no mesh in a known format; use OBJ, PLY, STL, OFF, GLB or glTF",
+                      ErrorCode::unsupported);
+}
+
+} // namespace
+
+void normalize_colors(PolygonMesh& mesh) {
+  float largest = 0;
+  for (const auto& color : mesh.colors) {
+    for (const float channel : color) {
+      largest = channel == full_channel ? largest : std::max(largest, channel);
+    }
+  }
+  const float unit = largest > 1 ? 255.0F : 1.0F;
+  for (auto& color : mesh.colors) {
+    for (float& channel : color) {
+      channel = std::clamp(channel / unit, 0.0F, 1.0F);
+    }
+  }
+}
+
+Result<PolygonMesh> read_mesh(std::string_view bytes, MeshFormat format, std::string_view name) {
+  return read_as(format, Source{name, bytes});
+}
+
+Result<PolygonMesh> read_mesh(const std::filesystem::path& path) {
+  const Result<FileBytes> file = read_file(path);
+  if (!file) {
+    return file.error();
+  }
+  const std::string name = path.string();
+  const Source source{name, file->view()};
+  std::optional<MeshFormat> format = format_of_content(source.bytes);
+  if (!format) {
+    format = format_of_name(path);
+  }
+  if (!format) {
+    return source.bytes.empty() ? source.error("the file is empty; export the model again")
+                                : not_a_mesh(source);
+  }
+  return read_as(*format, source);
+}
+
+} // namespace cagewright

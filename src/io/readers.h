@@ -1,0 +1,28 @@
+/// \file
+/// One reader for each format. Use read_mesh(), which chooses among them.
+#pragma once
+
+#include "core/result.h"
+#include "io/source.h"
+#include "mesh/polygon_mesh.h"
+
+#include <array>
+#include <limits>
+
+namespace cagewright {
+
+Result<PolygonMesh> read_obj(const Source& source);
+Result<PolygonMesh> read_off(const Source& source);
+
+/// The largest value of a channel, whatever the scale: for what a file leaves out.
+inline constexpr float full_channel = std::numeric_limits<float>::infinity();
+
+/// The colour of a vertex that has none in a file where others have.
+inline constexpr std::array<float, 4> white = {full_channel, full_channel, full_channel,
+                                               full_channel};
+
+/// Colours to [0, 1]: text has either fractions or bytes, and nothing says which. If any value is
+/// above 1 all are taken for bytes.
+void normalize_colors(PolygonMesh& mesh);
+
+} // namespace cagewright

@@ -1,0 +1,38 @@
+/// \file
+/// Meshes to files.
+#pragma once
+
+#include "core/result.h"
+#include "io/mesh_format.h"
+#include "mesh/polygon_mesh.h"
+
+#include <filesystem>
+#include <string>
+
+namespace cagewright {
+
+struct WriteOptions {
+  bool ascii_ply = false; ///< PLY as text instead of binary
+};
+
+/// Writes a mesh as OBJ, PLY, STL or OFF, by the extension.
+///
+/// Reading the file gives the same doubles: text holds the shortest digits that do, PLY is binary
+/// (little endian) with double properties, and STL is text, because binary STL holds only floats.
+/// What each format keeps besides positions and polygons:
+///  - OBJ: colours without alpha; groups, as objects.
+///  - PLY: colours.
+///  - OFF: colours.
+///  - STL: nothing; polygons are cut into triangles and vertices repeated for each.
+/// The file appears under its name only when complete (see write_file_atomically()).
+///
+/// Errors: unsupported (another extension), cannot_write; also cannot_write for a position that is
+/// not finite, which no reader would take.
+Status write_mesh(const PolygonMesh& mesh, const std::filesystem::path& path,
+                  const WriteOptions& options = {});
+
+/// The file's bytes alone. Errors: unsupported (glTF), cannot_write (a position is not finite).
+Result<std::string> format_mesh(const PolygonMesh& mesh, MeshFormat format,
+                                const WriteOptions& options = {});
+
+} // namespace cagewright
