@@ -20,9 +20,13 @@ constexpr double negligible = 1e-9;
 
 // Volume of a box with these edges, with each edge lengthened a little: of flat sets of points,
 // whose volume is always 0, it still ranks the boxes by area, and of straight ones by length.
-double cost(const Vec3& edges) { return (edges.array() + negligible).prod(); }
+double cost(const Vec3& edges) {
+  return (edges.array() + negligible).prod();
+}
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 // Convex hull, counter-clockwise and without collinear points (Andrew's monotone chain).
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {

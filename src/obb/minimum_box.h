@@ -22,11 +22,13 @@ struct MinimumBoxOptions {
 ///
 /// From each start the box is improved about one axis at a time: seen along the axis, the points
 /// have a rectangle of least area, which rotating calipers find among those flush with an edge of
-/// their convex hull (Freeman and Shapira 1975); it is repeated until no axis gains. That is done on
-/// a small subset of the points, to which the extreme ones of every box tried are added until the
-/// subset's box is the box of all. The result is the same for the same points; no hull in 3D is made.
+/// their convex hull (Freeman and Shapira 1975); it is repeated until no axis gains. That is done
+/// on a small subset of the points, to which the extreme ones of every box tried are added until
+/// the subset's box is the box of all. The result is the same for the same points; no hull in 3D is
+/// made.
 ///
-/// Cost: some tens of O(N) passes for each start; about 0.1 ms for 2,000 points with extra_starts 0.
+/// Cost: some tens of O(N) passes for each start; about 0.1 ms for 2,000 points with extra_starts
+/// 0.
 OrientedBox minimum_box(std::span<const Vec3> points, const MinimumBoxOptions& options = {});
 
 } // namespace cagewright
