@@ -10,8 +10,9 @@
 namespace cagewright {
 namespace {
 
-/// No cut leaves fewer slices than this on either side, whatever the box's length ...
-constexpr int least_margin = 2;
+/// No cut leaves fewer slices than this on either side, whatever the box's length (thinner parts
+/// would be crumbs) ...
+constexpr int least_margin = 3;
 /// ... nor less than this part of its length: a sliver box helps nobody.
 constexpr double margin_fraction = 0.05;
 
@@ -112,7 +113,8 @@ private:
     const BoxNode& node = tree_.nodes[at];
     const std::vector<CutPlane> planes =
         volume_cuts(grid_, owners_, static_cast<std::uint32_t>(at), node.voxels, node.box,
-                    {.split_parts = options_.split_parts, .margin = margin_of(node)});
+                    {.split_parts = options_.split_parts, .margin = margin_of(node),
+                     .padding = padding()});
     std::vector<std::optional<Candidate>> tried(planes.size());
     parallel_for(0, planes.size(), 1, [&](std::size_t p) { tried[p] = carve(at, planes[p]); });
     std::optional<Candidate> best;
@@ -131,21 +133,21 @@ private:
 
   std::optional<Candidate> best_by_jump(std::size_t at, StopReason& stop) const {
     const BoxNode& node = tree_.nodes[at];
-    const std::optional<PublishedCut> found =
-        published_cut(node.box, node.sections,
-                      {.min_jump = options_.min_jump, .margin = margin_of(node),
-                       .no_jump = options_.no_jump});
-    if (!found) {
-      stop = options_.no_jump == NoJump::skip ? StopReason::no_jump : StopReason::too_small;
-      return std::nullopt;
+    const std::vector<PublishedCut> cuts =
+        published_cuts(node.box, node.sections,
+                       {.min_jump = options_.min_jump, .margin = margin_of(node),
+                        .no_jump = options_.no_jump});
+    for (const PublishedCut& cut : cuts) {
+      if (std::optional<Candidate> candidate = carve(at, cut.plane)) {
+        candidate->cut.jump = cut.jump;
+        candidate->cut.middle = cut.middle;
+        stop = StopReason::cut;
+        return candidate;
+      }
     }
-    std::optional<Candidate> candidate = carve(at, found->plane);
-    stop = candidate ? StopReason::cut : StopReason::too_small;
-    if (candidate) {
-      candidate->cut.jump = found->jump;
-      candidate->cut.middle = found->middle;
-    }
-    return candidate;
+    stop = cuts.empty() && options_.no_jump == NoJump::skip ? StopReason::no_jump
+                                                            : StopReason::too_small;
+    return std::nullopt;
   }
 
   /// The parts and boxes that a plane makes of a node; nothing when it cuts nothing off.

@@ -35,14 +35,14 @@ struct SlicingOptions {
   NoJump no_jump = NoJump::middle; ///< published rule: what to do when no jump is clear
   double min_gain = 0.015; ///< volume rule: a cut must save this fraction of the box's volume
   double padding = 0.25;   ///< of a voxel, by which boxes reach beyond their voxels
-  CrossSectionOptions cross_section;
+  CrossSectionOptions cross_section = {};
 };
 
 /// Why a box was not cut.
 enum class StopReason {
   cut,       ///< it was
   depth,     ///< it lies as deep as was asked for
-  too_small, ///< no room for a cut that leaves two voxels on either side
+  too_small, ///< no cut leaves a part worth a box on either side
   prismatic, ///< T1 > eta and T2 > zeta
   no_jump,   ///< published rule with NoJump::skip: no clear jump on any axis
   no_gain,   ///< volume rule: no cut saves enough volume

@@ -12,8 +12,10 @@ namespace {
 /// on the same side.
 constexpr double off_center = 1e-6;
 
-/// Crumbs are parts at most this many voxels thick along the axis of the cut.
+/// Crumbs are parts at most this many voxels thick along the axis of the cut ...
 constexpr double crumb_thickness = 2.0;
+/// ... or with less than this share of the voxels, when a box of their own saves no volume.
+constexpr double crumb_share = 0.05;
 
 class Partition {
 public:
@@ -124,8 +126,11 @@ private:
 
   [[nodiscard]] bool is_crumb(const Extent& part, const Extent& neighbor) const {
     const double thickness = part.box.sizes()[plane_.axis] / grid_.size + 1;
+    const bool small =
+        static_cast<double>(part.voxels) < crumb_share * static_cast<double>(voxels_.size());
     return thickness <= crumb_thickness + off_center ||
-           volume(part.box.merged(neighbor.box)) <= volume(part.box) + volume(neighbor.box);
+           (small &&
+            volume(part.box.merged(neighbor.box)) <= volume(part.box) + volume(neighbor.box));
   }
 
   const VoxelGrid& grid_;

@@ -4,21 +4,22 @@
 
 namespace cagewright {
 
-std::optional<PublishedCut> published_cut(const OrientedBox& box,
-                                          const std::array<CrossSection, 3>& sections,
-                                          const PublishedRuleOptions& options) {
+std::vector<PublishedCut> published_cuts(const OrientedBox& box,
+                                         const std::array<CrossSection, 3>& sections,
+                                         const PublishedRuleOptions& options) {
   const auto margin = static_cast<std::size_t>(options.margin);
+  std::vector<PublishedCut> cuts;
   for (const CrossSection& section : sections) {
     const Jump jump = greatest_jump(section.smooth, margin);
     if (jump.height >= options.min_jump) {
-      return PublishedCut{{section.axis, section.between(jump.slice)}, jump.height, false};
+      cuts.push_back({{section.axis, section.between(jump.slice)}, jump.height, false});
     }
   }
   const bool room = sections[0].area.size() >= 2 * margin;
-  if (options.no_jump == NoJump::skip || !room || box.half[0] <= 0) {
-    return std::nullopt;
+  if (options.no_jump == NoJump::middle && room && box.half[0] > 0) {
+    cuts.push_back({{0, 0.0}, 0.0, true});
   }
-  return PublishedCut{{0, 0.0}, 0.0, true};
+  return cuts;
 }
 
 double prismatic_ratio(const CrossSection& section, std::size_t margin) {

@@ -7,7 +7,7 @@
 #include "slicing/partition.h"
 
 #include <array>
-#include <optional>
+#include <vector>
 
 namespace cagewright {
 
@@ -19,7 +19,7 @@ enum class NoJump {
 
 struct PublishedRuleOptions {
   double min_jump = 0.15; ///< a jump lower than this fraction of the greatest f is not clear
-  int margin = 2;         ///< slices that stay on either side of a cut, at least
+  int margin = 3;         ///< slices that stay on either side of a cut, at least
   NoJump no_jump = NoJump::middle;
 };
 
@@ -29,13 +29,14 @@ struct PublishedCut {
   bool middle = false; ///< no jump was clear: through the middle of the longest edge
 };
 
-/// The cut of Xian, Lin and Gao (2012): along the longest axis that has a clear jump, at the
-/// greatest one.
+/// The cuts of Xian, Lin and Gao (2012), in the order in which to try them: at the greatest jump of
+/// each axis that has a clear one, longest axis first, then as NoJump says. A cut that only takes
+/// crumbs off is no cut; the next one is then due.
 ///
 /// \param sections  f along the three axes of the box, longest first
-std::optional<PublishedCut> published_cut(const OrientedBox& box,
-                                          const std::array<CrossSection, 3>& sections,
-                                          const PublishedRuleOptions& options = {});
+std::vector<PublishedCut> published_cuts(const OrientedBox& box,
+                                         const std::array<CrossSection, 3>& sections,
+                                         const PublishedRuleOptions& options = {});
 
 /// T1 = min f / max f along the longest axis, near 1 when the contents are already prismatic. The
 /// `margin` slices at each end do not count: there every rounded shape tapers off.

@@ -101,7 +101,7 @@ std::vector<Vec3> hull_corners(const VoxelGrid& grid, std::span<const std::uint3
     rows.append_outline(k, corners);
   }
   for (Vec3& c : corners) {
-    c = grid.origin + grid.axes * (c * grid.size);
+    c = grid.to_world(c);
   }
   return corners;
 }

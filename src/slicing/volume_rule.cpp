@@ -23,7 +23,7 @@ struct Sweep {
   std::span<const std::uint32_t> voxels;
   std::span<const Vec3> centers; // of the voxels, in the frame of the box
   std::array<std::ptrdiff_t, 26> steps;
-  Vec3 voxel_extent; // of a voxel, along the axes of the box
+  Vec3 extent_of_one; // of the padded box of a single voxel, along the axes of the box
   bool split_parts;
 };
 
@@ -95,7 +95,7 @@ private:
   };
 
   [[nodiscard]] double volume(const Extent& e) const {
-    return (e.high - e.low + sweep_.voxel_extent).prod();
+    return (e.high - e.low + sweep_.extent_of_one).prod();
   }
 
   std::uint32_t find(std::uint32_t s) {
@@ -190,9 +190,10 @@ std::vector<CutPlane> volume_cuts(const VoxelGrid& grid, const VoxelOwners& owne
   for (const std::uint32_t v : voxels) {
     centers.push_back(box.to_local(grid.center(v)));
   }
-  const Vec3 voxel_extent =
-      (box.axes.transpose() * grid.axes).cwiseAbs() * Vec3::Constant(grid.size);
-  const Sweep sweep{grid, owners, part, voxels, centers, neighbor_steps(grid), voxel_extent,
+  const Vec3 extent_of_one =
+      ((box.axes.transpose() * grid.axes).cwiseAbs() * Vec3::Constant(grid.size)).array() +
+      2 * options.padding;
+  const Sweep sweep{grid, owners, part, voxels, centers, neighbor_steps(grid), extent_of_one,
                     options.split_parts};
   std::array<std::vector<Scored>, 3> by_axis;
   parallel_for(0, 3, 1, [&](std::size_t axis) {

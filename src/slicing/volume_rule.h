@@ -15,8 +15,9 @@ namespace cagewright {
 
 struct VolumeRuleOptions {
   bool split_parts = true; ///< each half falls into its connected parts, each with its own box
-  int margin = 2;          ///< slices that stay on either side of a cut, at least
+  int margin = 3;          ///< slices that stay on either side of a cut, at least
   int per_axis = 2;        ///< candidates offered for each axis
+  double padding = 0;      ///< length by which boxes reach beyond their voxels
 };
 
 /// The cuts across the axes of the box after which the boxes of the connected parts, aligned with
