@@ -25,7 +25,7 @@ enum class Pieces {
 
 struct GenerateOptions {
   int resolution = 64; ///< voxels along the longest axis of the model's box; 8 to 512
-  SlicingOptions slicing;
+  SlicingOptions slicing = {};
   bool registration = true; ///< join the faces of neighbouring boxes where they fit
   Pieces pieces = Pieces::together;
 };

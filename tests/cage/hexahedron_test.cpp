@@ -82,10 +82,11 @@ TEST(Triangulate, CutsASharedBentQuadAlikeForBothOwners) {
   left.shared[1] = true;
   right.shared[0] = true;
   const auto triangles_of = [](const Hexahedron& solid, int f) {
+    const std::array<Triangle, 12> cut = triangulate(solid);
     std::vector<std::vector<double>> found;
     for (const int t : {2 * f, 2 * f + 1}) {
       std::vector<std::vector<double>> corners;
-      for (const Index i : triangulate(solid)[t]) {
+      for (const Index i : cut[t]) {
         corners.emplace_back(solid.corners[i].begin(), solid.corners[i].end());
       }
       std::sort(corners.begin(), corners.end());
