@@ -28,9 +28,9 @@ Error cannot_write(const std::filesystem::path& path, int error) {
   case EDQUOT:
     return {ErrorCode::cannot_write, name + ": the disk is full; free some space"};
   default:
-    return {ErrorCode::cannot_write, name + ": cannot be written: " +
-                                         std::generic_category().message(error) +
-                                         "; choose another place"};
+    return {ErrorCode::cannot_write,
+            name + ": cannot be written: " + std::generic_category().message(error) +
+                "; choose another place"};
   }
 }
 

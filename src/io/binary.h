@@ -10,8 +10,7 @@
 namespace cagewright {
 
 /// The number stored at `from`, which need not be aligned; sizeof(T) bytes are read.
-template <class T>
-T load(const char* from, std::endian order = std::endian::little) {
+template <class T> T load(const char* from, std::endian order = std::endian::little) {
   std::array<char, sizeof(T)> bytes;
   if (order == std::endian::native) {
     std::memcpy(bytes.data(), from, sizeof(T));

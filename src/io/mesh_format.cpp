@@ -28,8 +28,8 @@ std::optional<MeshFormat> format_of_name(const std::filesystem::path& path) {
     std::string_view extension;
     MeshFormat format;
   };
-  constexpr Known known[] = {{".obj", MeshFormat::obj}, {".ply", MeshFormat::ply},
-                             {".stl", MeshFormat::stl}, {".off", MeshFormat::off},
+  constexpr Known known[] = {{".obj", MeshFormat::obj},  {".ply", MeshFormat::ply},
+                             {".stl", MeshFormat::stl},  {".off", MeshFormat::off},
                              {".glb", MeshFormat::gltf}, {".gltf", MeshFormat::gltf}};
   for (const Known& kind : known) {
     if (extension == kind.extension) {

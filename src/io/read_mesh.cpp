@@ -22,7 +22,9 @@ Result<PolygonMesh> read_as(MeshFormat format, const Source& source) {
     case MeshFormat::off:
       return read_off(source);
     case MeshFormat::ply:
+      return read_ply(source);
     case MeshFormat::stl:
+      return read_stl(source);
     case MeshFormat::gltf:
       break;
     }
@@ -65,13 +67,13 @@ void normalize_colors(PolygonMesh& mesh) {
   float largest = 0;
   for (const auto& color : mesh.colors) {
     for (const float channel : color) {
-      largest = channel == full_channel ? largest : std::max(largest, channel);
+      largest = channel == full_channel ? largest : std::max(largest, channel); // nan: passed by
     }
   }
   const float unit = largest > 1 ? 255.0F : 1.0F;
   for (auto& color : mesh.colors) {
     for (float& channel : color) {
-      channel = std::clamp(channel / unit, 0.0F, 1.0F);
+      channel = channel > 0 ? std::min(channel / unit, 1.0F) : 0.0F; // nan becomes 0
     }
   }
 }

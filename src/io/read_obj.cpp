@@ -73,7 +73,7 @@ private:
     std::array<double, 7> values{};
     std::size_t count = 0;
     for (cursor_.skip_blanks(); !cursor_.at_line_end() && count < 7; cursor_.skip_blanks()) {
-      const std::optional<double> value = cursor_.number();
+      const std::optional<double> value = count < 3 ? cursor_.number() : cursor_.any_number();
       if (!value) {
         return cursor_.error(quoted(cursor_.peek_word()) + " is not a finite number" +
                              std::string(export_again));
@@ -134,9 +134,9 @@ private:
     const std::string_view digits = text.substr(0, text.find('/'));
     if (!digits.empty() && digits.find_first_not_of("0123456789", digits[0] == '-' ? 1 : 0) ==
                                std::string_view::npos) {
-      return source_.error_in_line(
-          word, no_such_vertex("face", one_line(digits, 40),
-                               static_cast<std::size_t>(vertices_in_file())));
+      return source_.error_in_line(word,
+                                   no_such_vertex("face", one_line(digits, 40),
+                                                  static_cast<std::size_t>(vertices_in_file())));
     }
     return source_.error_in_line(word, quoted(text) + " is not a corner of a face" +
                                            std::string(export_again));
@@ -148,10 +148,10 @@ private:
                                               std::string(export_again));
     }
     if (vertex < 0) {
-      return source_.error_in_line(
-          begin, "face refers to vertex " + std::to_string(vertex) + ", but only " +
-                     std::to_string(mesh_.positions.size()) + " stand before it" +
-                     std::string(export_again));
+      return source_.error_in_line(begin, "face refers to vertex " + std::to_string(vertex) +
+                                              ", but only " +
+                                              std::to_string(mesh_.positions.size()) +
+                                              " stand before it" + std::string(export_again));
     }
     return source_.error_in_line(begin,
                                  no_such_vertex("face", std::to_string(vertex),
@@ -181,8 +181,8 @@ private:
         mesh_.group_names.emplace_back("default");
         mesh_.face_groups.assign(mesh_.face_count() - 1, 0);
       }
-      const auto [entry, is_new] = group_indices_.emplace(
-          std::string(group_), static_cast<Index>(mesh_.group_names.size()));
+      const auto [entry, is_new] =
+          group_indices_.emplace(std::string(group_), static_cast<Index>(mesh_.group_names.size()));
       if (is_new) {
         mesh_.group_names.push_back(entry->first);
       }
@@ -204,6 +204,8 @@ private:
 
 } // namespace
 
-Result<PolygonMesh> read_obj(const Source& source) { return ObjReader(source).read(); }
+Result<PolygonMesh> read_obj(const Source& source) {
+  return ObjReader(source).read();
+}
 
 } // namespace cagewright

@@ -17,7 +17,9 @@ struct Counts {
 };
 
 // Faces of one or two corners are points and lines to OFF, and no part of a surface.
-bool is_surface(std::size_t corners) { return corners >= 3; }
+bool is_surface(std::size_t corners) {
+  return corners >= 3;
+}
 
 class OffReader {
 public:
@@ -102,7 +104,7 @@ private:
       return ends_early(v, "vertex", counts_.vertices);
     }
     for (; !cursor_.at_line_end() && count < wanted; cursor_.skip_blanks()) {
-      const std::optional<double> value = cursor_.number();
+      const std::optional<double> value = count < 3 ? cursor_.number() : cursor_.any_number();
       if (!value) {
         return cursor_.error(found_here() + " is not a finite number" + std::string(export_again));
       }
@@ -164,9 +166,8 @@ private:
       return cursor_.error(found_here() + " is not a vertex number" + std::string(export_again));
     }
     if (!vertex || *vertex < 0 || static_cast<std::size_t>(*vertex) >= counts_.vertices) {
-      return cursor_.error(no_such_vertex("face " + std::to_string(f),
-                                          one_line(cursor_word_before(vertex), 40),
-                                          counts_.vertices));
+      return cursor_.error(no_such_vertex(
+          "face " + std::to_string(f), one_line(cursor_word_before(vertex), 40), counts_.vertices));
     }
     corners_.push_back(static_cast<Index>(*vertex));
     return success();

@@ -13,6 +13,8 @@ namespace cagewright {
 
 Result<PolygonMesh> read_obj(const Source& source);
 Result<PolygonMesh> read_off(const Source& source);
+Result<PolygonMesh> read_ply(const Source& source);
+Result<PolygonMesh> read_stl(const Source& source);
 
 /// The largest value of a channel, whatever the scale: for what a file leaves out.
 inline constexpr float full_channel = std::numeric_limits<float>::infinity();

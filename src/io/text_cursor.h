@@ -4,10 +4,12 @@
 
 #include "io/source.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -43,9 +45,7 @@ public:
   }
 
   /// Whether no word is left on this line. Call after skip_blanks().
-  [[nodiscard]] bool at_line_end() const {
-    return at_ == end_ || *at_ == line_end_ || *at_ == '#';
-  }
+  [[nodiscard]] bool at_line_end() const { return at_ == end_ || *at_ == line_end_ || *at_ == '#'; }
 
   /// To the start of the next line, past comments and continued lines.
   void next_line() {
@@ -101,24 +101,37 @@ public:
     return {from, static_cast<std::size_t>(to - from)};
   }
 
-  /// The finite number here, rounded correctly; none, without moving, where there is none.
+  /// The number here, rounded correctly; none, without moving, where there is none. It may be
+  /// infinite or not a number, which files hold in places that do not matter.
   /// std::from_chars, because strtod depends on the locale and streams are slow.
-  std::optional<double> number() {
+  std::optional<double> any_number() {
     const char* from = at_;
     if (from != end_ && *from == '+' && from + 1 != end_ && from[1] != '-') {
       ++from; // from_chars takes no plus
     }
     double value = 0;
     const auto [to, error] = std::from_chars(from, end_, value);
-    if (error == std::errc::result_out_of_range && is_tiny({from, to})) {
-      value = *from == '-' ? -0.0 : 0.0; // from_chars also refuses what rounds to zero
-    } else if (error != std::errc() || !std::isfinite(value)) {
+    if (error == std::errc::result_out_of_range) { // which leaves the value as it was
+      value = is_tiny({from, to}) ? 0.0 : std::numeric_limits<double>::infinity();
+      value = *from == '-' ? -value : value;
+    } else if (error != std::errc()) {
       return std::nullopt;
     }
     if (!ends_word(to)) {
       return std::nullopt;
     }
     at_ = to;
+    return value;
+  }
+
+  /// The same, but none where the number is not finite.
+  std::optional<double> number() {
+    const char* const before = at_;
+    const std::optional<double> value = any_number();
+    if (value && !std::isfinite(*value)) {
+      at_ = before;
+      return std::nullopt;
+    }
     return value;
   }
 

@@ -33,8 +33,7 @@ public:
   }
 
   // The shortest digits that read back as the same number.
-  template <class Number>
-  Text& number(Number value) {
+  template <class Number> Text& number(Number value) {
     char digits[32];
     const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
     text_.append(digits, end);
@@ -42,8 +41,7 @@ public:
   }
 
   // The bytes of a number, lowest first.
-  template <class Number>
-  Text& binary(Number value) {
+  template <class Number> Text& binary(Number value) {
     char bytes[sizeof value];
     std::memcpy(bytes, &value, sizeof value);
     if constexpr (std::endian::native == std::endian::big) {
@@ -167,7 +165,9 @@ void append_ply_header(Text& text, const PolygonMesh& mesh, const PlyTypes& type
        << (types.signed_indices ? " int" : " uint") << " vertex_indices\nend_header\n";
 }
 
-std::uint8_t to_byte(float channel) { return static_cast<std::uint8_t>(std::lround(channel * 255)); }
+std::uint8_t to_byte(float channel) {
+  return static_cast<std::uint8_t>(std::lround(channel * 255));
+}
 
 void append_ply_text(Text& text, const PolygonMesh& mesh, const PlyTypes& types) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {

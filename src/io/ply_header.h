@@ -1,0 +1,45 @@
+/// \file
+/// The header of a PLY file: what the elements after it hold.
+#pragma once
+
+#include "core/result.h"
+#include "io/source.h"
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace cagewright {
+
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+/// Bytes of a value.
+std::size_t size_of(PlyType type);
+
+struct PlyProperty {
+  std::string_view name;
+  PlyType type = PlyType::float32;
+  std::optional<PlyType> count_type; ///< of a list: the type of its length
+};
+
+struct PlyElement {
+  std::string_view name;
+  std::size_t count = 0;
+  std::vector<PlyProperty> properties;
+
+  /// Index of the property, or none.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view property) const;
+};
+
+struct PlyHeader {
+  enum class Encoding { text, little_endian, big_endian };
+  Encoding encoding = Encoding::text;
+  std::vector<PlyElement> elements;
+  std::size_t end = 0; ///< offset of the first byte after the header
+};
+
+/// Parses the header. Errors: malformed, unsupported.
+Result<PlyHeader> read_ply_header(const Source& source);
+
+} // namespace cagewright

@@ -1,0 +1,418 @@
+#include "io/binary.h"
+#include "io/ply_header.h"
+#include "io/readers.h"
+#include "io/text_cursor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace cagewright {
+namespace {
+
+double load_as_double(const char* from, PlyType type, std::endian order) {
+  switch (type) {
+  case PlyType::int8:
+    return load<std::int8_t>(from, order);
+  case PlyType::uint8:
+    return load<std::uint8_t>(from, order);
+  case PlyType::int16:
+    return load<std::int16_t>(from, order);
+  case PlyType::uint16:
+    return load<std::uint16_t>(from, order);
+  case PlyType::int32:
+    return load<std::int32_t>(from, order);
+  case PlyType::uint32:
+    return load<std::uint32_t>(from, order);
+  case PlyType::int64:
+    return static_cast<double>(load<std::int64_t>(from, order));
+  case PlyType::uint64:
+    return static_cast<double>(load<std::uint64_t>(from, order));
+  case PlyType::float32:
+    return load<float>(from, order);
+  case PlyType::float64:
+    return load<double>(from, order);
+  }
+  return 0;
+}
+
+// The largest value of an integer type, which stands for 1 in colours; 1 for floats.
+double unit_of(PlyType type) {
+  switch (type) {
+  case PlyType::int8:
+    return std::numeric_limits<std::int8_t>::max();
+  case PlyType::uint8:
+    return std::numeric_limits<std::uint8_t>::max();
+  case PlyType::int16:
+    return std::numeric_limits<std::int16_t>::max();
+  case PlyType::uint16:
+    return std::numeric_limits<std::uint16_t>::max();
+  case PlyType::int32:
+    return std::numeric_limits<std::int32_t>::max();
+  case PlyType::uint32:
+    return std::numeric_limits<std::uint32_t>::max();
+  case PlyType::int64:
+  case PlyType::uint64:
+    return 0x1p63;
+  case PlyType::float32:
+  case PlyType::float64:
+    return 1;
+  }
+  return 1;
+}
+
+// Where the values come from: PlyText and PlyBinary have the same members.
+//  - begin_row(): to the next row of an element; false at the end of the file
+//  - value(type): the next value of the row; none where the row or the file ends
+//  - end_row(): past what is left of the row
+//  - remaining(), least_size(type): bytes that are left, and that a value takes at least
+//  - bad_value(where): the error where value() gave none
+//  - error(what): an error about the row
+
+// One row to a line, as the format's own description has it.
+class PlyText {
+public:
+  PlyText(const Source& source, std::size_t begin) : cursor_(source) { cursor_.move_to(begin); }
+
+  bool begin_row() { return cursor_.next_word_of_file(); }
+
+  std::optional<double> value(PlyType) {
+    cursor_.skip_blanks();
+    return cursor_.any_number();
+  }
+
+  void end_row() { cursor_.next_line(); }
+
+  [[nodiscard]] std::size_t remaining() const { return cursor_.remaining() + 1; }
+
+  // Every value takes a digit and a blank or line end.
+  static std::size_t least_size(PlyType) { return 2; }
+
+  [[nodiscard]] Error bad_value(const std::string& where) const {
+    return cursor_.at_line_end()
+               ? cursor_.error("the line ends within " + where + std::string(export_again))
+               : cursor_.error(quoted(cursor_.peek_word()) + " is not a number" +
+                               std::string(export_again));
+  }
+
+  [[nodiscard]] Error error(const std::string& what) const { return cursor_.error(what); }
+
+private:
+  TextCursor cursor_;
+};
+
+class PlyBinary {
+public:
+  PlyBinary(const Source& source, std::size_t begin, std::endian order)
+      : source_(source), at_(begin), order_(order) {}
+
+  bool begin_row() {
+    row_ = at_;
+    return true;
+  }
+
+  std::optional<double> value(PlyType type) {
+    const std::size_t size = size_of(type);
+    if (remaining() < size) {
+      return std::nullopt;
+    }
+    at_ += size;
+    return load_as_double(source_.bytes.data() + at_ - size, type, order_);
+  }
+
+  void end_row() {}
+
+  [[nodiscard]] std::size_t remaining() const { return source_.bytes.size() - at_; }
+
+  static std::size_t least_size(PlyType type) { return size_of(type); }
+
+  [[nodiscard]] Error bad_value(const std::string& where) const {
+    return source_.error_at_byte(at_, "the file ends within " + where + "; it is cut short" +
+                                          std::string(export_again));
+  }
+
+  [[nodiscard]] Error error(const std::string& what) const {
+    return source_.error_at_byte(row_, what);
+  }
+
+private:
+  Source source_;
+  std::size_t at_;
+  std::size_t row_ = 0; // where the row began
+  std::endian order_;
+};
+
+template <class Values> class PlyReader {
+public:
+  PlyReader(const Source& source, const PlyHeader& header, Values values)
+      : source_(source), header_(header), values_(std::move(values)) {}
+
+  Result<PolygonMesh> read() {
+    const auto vertices =
+        std::find_if(header_.elements.begin(), header_.elements.end(),
+                     [](const PlyElement& element) { return element.name == "vertex"; });
+    vertices_ = vertices != header_.elements.end() ? vertices->count : 0;
+    if (vertices_ > std::numeric_limits<Index>::max()) {
+      return too_many_vertices(source_, vertices_);
+    }
+    for (const PlyElement& element : header_.elements) {
+      if (const Status status = read_element(element); !status) {
+        return status.error();
+      }
+    }
+    if (mesh_.face_count() == 0) {
+      return no_faces(source_);
+    }
+    return std::move(mesh_);
+  }
+
+private:
+  Status read_element(const PlyElement& element) {
+    if (const Status status = check_size(element); !status) {
+      return status;
+    }
+    if (element.name == "vertex" && !vertices_done_) {
+      vertices_done_ = true;
+      return read_vertices(element);
+    }
+    if (element.name == "face" && element.count != 0) {
+      return read_lists(element, [this] { return add_face(); });
+    }
+    if (element.name == "tristrips" && element.count != 0) {
+      return read_lists(element, [this] { return add_strip(); });
+    }
+    return read_rows(element, {}, [] { return success(); });
+  }
+
+  // The count in a damaged header may be anything: nothing is allocated before this.
+  Status check_size(const PlyElement& element) {
+    std::size_t row = 0;
+    for (const PlyProperty& property : element.properties) {
+      row += Values::least_size(property.count_type.value_or(property.type));
+    }
+    if (row != 0 && element.count > values_.remaining() / row) {
+      return source_.error("the header promises " + std::to_string(element.count) +
+                           " rows of the element " + quoted(element.name) +
+                           ", but the file ends before; it is cut short" +
+                           std::string(export_again));
+    }
+    return success();
+  }
+
+  // Calls use() for each row, with the row's values in values_of_row_ (0 for a list) and the list
+  // of the given property in list_.
+  template <class Use>
+  Status read_rows(const PlyElement& element, std::optional<std::size_t> list, Use use) {
+    values_of_row_.assign(element.properties.size(), 0);
+    // Rows without properties take no room in the file, so that any number of them may be promised.
+    const std::size_t rows = element.properties.empty() ? 0 : element.count;
+    for (row_ = 0; row_ < rows; ++row_) {
+      if (!values_.begin_row()) {
+        return values_.error("the file ends after " + std::to_string(row_) + " of " +
+                             std::to_string(element.count) + " rows of the element " +
+                             quoted(element.name) + "; it is cut short" +
+                             std::string(export_again));
+      }
+      for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        if (property.count_type) {
+          const Status status = read_list(element, property, list == i ? &list_ : nullptr);
+          if (!status) {
+            return status;
+          }
+        } else if (const std::optional<double> value = values_.value(property.type)) {
+          values_of_row_[i] = *value;
+        } else {
+          return values_.bad_value(row_name(element));
+        }
+      }
+      if (const Status status = use(); !status) {
+        return status;
+      }
+      values_.end_row();
+    }
+    return success();
+  }
+
+  // Reads a list, into `kept` if that is given.
+  Status read_list(const PlyElement& element, const PlyProperty& property,
+                   std::vector<double>* kept) {
+    const std::optional<double> count = values_.value(*property.count_type);
+    if (!count) {
+      return values_.bad_value(row_name(element));
+    }
+    if (!(*count >= 0) || *count != std::floor(*count)) {
+      return values_.error("a list cannot have " + number_text(*count) + " items" +
+                           std::string(export_again));
+    }
+    const double room =
+        static_cast<double>(values_.remaining() / Values::least_size(property.type));
+    if (*count > room) {
+      return values_.error("a list promises " + number_text(*count) +
+                           " items, but the file ends before; it is cut short" +
+                           std::string(export_again));
+    }
+    if (kept != nullptr) {
+      kept->clear();
+    }
+    for (auto left = static_cast<std::size_t>(*count); left != 0; --left) {
+      const std::optional<double> value = values_.value(property.type);
+      if (!value) {
+        return values_.bad_value(row_name(element));
+      }
+      if (kept != nullptr) {
+        kept->push_back(*value);
+      }
+    }
+    return success();
+  }
+
+  Status read_vertices(const PlyElement& element) {
+    std::array<std::size_t, 3> axes{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      constexpr std::array<std::string_view, 3> names = {"x", "y", "z"};
+      const std::optional<std::size_t> axis = find_scalar(element, names[i]);
+      if (!axis) {
+        return source_.error("the element 'vertex' has no property " + quoted(names[i]) +
+                             std::string(export_again));
+      }
+      axes[i] = *axis;
+    }
+    const std::array<std::optional<std::size_t>, 4> channels = {
+        find_channel(element, "red"), find_channel(element, "green"), find_channel(element, "blue"),
+        find_channel(element, "alpha")};
+    const bool has_color = channels[0] && channels[1] && channels[2];
+    mesh_.positions.reserve(element.count);
+    return read_rows(element, {}, [&]() -> Status {
+      const Vec3 p(values_of_row_[axes[0]], values_of_row_[axes[1]], values_of_row_[axes[2]]);
+      if (!p.allFinite()) {
+        return values_.error("vertex " + std::to_string(row_) +
+                             " has a coordinate that is not a finite number" +
+                             std::string(export_again));
+      }
+      mesh_.positions.push_back(p);
+      if (has_color) {
+        std::array<float, 4>& color = mesh_.colors.emplace_back();
+        for (std::size_t i = 0; i < 4; ++i) {
+          color[i] = channels[i] ? channel_value(element, *channels[i]) : 1.0F;
+        }
+      }
+      return success();
+    });
+  }
+
+  static std::optional<std::size_t> find_scalar(const PlyElement& element, std::string_view name) {
+    const std::optional<std::size_t> found = element.find(name);
+    return found && !element.properties[*found].count_type ? found : std::nullopt;
+  }
+
+  static std::optional<std::size_t> find_channel(const PlyElement& element, std::string_view name) {
+    const std::optional<std::size_t> found = find_scalar(element, name);
+    return found ? found : find_scalar(element, "diffuse_" + std::string(name));
+  }
+
+  [[nodiscard]] float channel_value(const PlyElement& element, std::size_t property) const {
+    const double value = values_of_row_[property] / unit_of(element.properties[property].type);
+    return value > 0 ? static_cast<float>(std::min(value, 1.0)) : 0.0F; // nan becomes 0
+  }
+
+  template <class Use> Status read_lists(const PlyElement& element, Use use) {
+    std::optional<std::size_t> corners = element.find("vertex_indices");
+    corners = corners ? corners : element.find("vertex_index");
+    if (!corners || !element.properties[*corners].count_type) {
+      return source_.error("the element " + quoted(element.name) + " has no list 'vertex_indices'" +
+                           std::string(export_again));
+    }
+    return read_rows(element, corners, use);
+  }
+
+  Status add_face() {
+    corners_.clear();
+    for (const double value : list_) {
+      if (!is_vertex(value)) {
+        return no_vertex(value);
+      }
+      corners_.push_back(static_cast<Index>(value));
+    }
+    if (corners_.size() < 3) {
+      return values_.error("face " + std::to_string(row_) + " needs 3 corners, but has " +
+                           std::to_string(corners_.size()) + std::string(export_again));
+    }
+    mesh_.add_face(corners_);
+    return success();
+  }
+
+  // A list of strips with -1 between them; every other triangle of a strip runs the other way
+  // round. Triangles with a repeated corner only turn the strip round a bend.
+  Status add_strip() {
+    std::size_t begin = 0; // of the strip under way
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      if (list_[i] == -1) {
+        begin = i + 1;
+        continue;
+      }
+      if (!is_vertex(list_[i])) {
+        return no_vertex(list_[i]);
+      }
+      if (i < begin + 2) {
+        continue;
+      }
+      const auto a = static_cast<Index>(list_[i - 2]);
+      const auto b = static_cast<Index>(list_[i - 1]);
+      const auto c = static_cast<Index>(list_[i]);
+      if (a != b && b != c && c != a) {
+        (i - begin) % 2 == 0 ? mesh_.add_face({a, b, c}) : mesh_.add_face({b, a, c});
+      }
+    }
+    return success();
+  }
+
+  [[nodiscard]] bool is_vertex(double value) const {
+    return value >= 0 && value < static_cast<double>(vertices_) && value == std::floor(value);
+  }
+
+  [[nodiscard]] Error no_vertex(double value) const {
+    return values_.error(
+        no_such_vertex("face " + std::to_string(row_), number_text(value), vertices_));
+  }
+
+  [[nodiscard]] std::string row_name(const PlyElement& element) const {
+    return "row " + std::to_string(row_) + " of the element " + quoted(element.name);
+  }
+
+  static std::string number_text(double value) {
+    char digits[32];
+    return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+  }
+
+  Source source_;
+  const PlyHeader& header_;
+  Values values_;
+  PolygonMesh mesh_;
+  std::size_t vertices_ = 0; // as the header says, so that faces may come first
+  bool vertices_done_ = false;
+  std::size_t row_ = 0;
+  std::vector<double> values_of_row_;
+  std::vector<double> list_;
+  std::vector<Index> corners_;
+};
+
+} // namespace
+
+Result<PolygonMesh> read_ply(const Source& source) {
+  const Result<PlyHeader> header = read_ply_header(source);
+  if (!header) {
+    return header.error();
+  }
+  if (header->encoding == PlyHeader::Encoding::text) {
+    return PlyReader(source, *header, PlyText(source, header->end)).read();
+  }
+  const std::endian order = header->encoding == PlyHeader::Encoding::little_endian
+                                ? std::endian::little
+                                : std::endian::big;
+  return PlyReader(source, *header, PlyBinary(source, header->end, order)).read();
+}
+
+} // namespace cagewright
