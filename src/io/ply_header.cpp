@@ -79,7 +79,7 @@ private:
     if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) {
       return success();
     }
-    return wrong(quoted(keyword) + " is no PLY header statement");
+    return wrong(in_quotes(keyword) + " is no PLY header statement");
   }
 
   Status read_format() {
@@ -92,7 +92,7 @@ private:
     } else if (name == "binary_big_endian") {
       header_.encoding = PlyHeader::Encoding::big_endian;
     } else {
-      return wrong("the format " + quoted(name) + " is not one of PLY's");
+      return wrong("the format " + in_quotes(name) + " is not one of PLY's");
     }
     return success();
   }
@@ -104,7 +104,7 @@ private:
     const char* const end = count.data() + count.size();
     const auto [to, error] = std::from_chars(count.data(), end, element.count);
     if (error != std::errc() || to != end || count.empty()) {
-      return wrong("an element needs a name and a count, but the count is " + quoted(count));
+      return wrong("an element needs a name and a count, but the count is " + in_quotes(count));
     }
     header_.elements.push_back(std::move(element));
     return success();
@@ -120,13 +120,13 @@ private:
       const std::string_view count_name = word();
       property.count_type = type_of(count_name);
       if (!property.count_type) {
-        return wrong("the type " + quoted(count_name) + " is not one of PLY's");
+        return wrong("the type " + in_quotes(count_name) + " is not one of PLY's");
       }
       type_name = word();
     }
     const std::optional<PlyType> type = type_of(type_name);
     if (!type) {
-      return wrong("the type " + quoted(type_name) + " is not one of PLY's");
+      return wrong("the type " + in_quotes(type_name) + " is not one of PLY's");
     }
     property.type = *type;
     property.name = word();

@@ -11,30 +11,6 @@
 namespace cagewright {
 namespace {
 
-Result<PolygonMesh> read_as(MeshFormat format, const Source& source) {
-  if (source.bytes.empty()) {
-    return source.error("the file is empty; export the model again");
-  }
-  try {
-    switch (format) {
-    case MeshFormat::obj:
-      return read_obj(source);
-    case MeshFormat::off:
-      return read_off(source);
-    case MeshFormat::ply:
-      return read_ply(source);
-    case MeshFormat::stl:
-      return read_stl(source);
-    case MeshFormat::gltf:
-      break;
-    }
-  } catch (const std::bad_alloc&) {
-    return source.error("there is not enough memory for the mesh; simplify the model",
-                        ErrorCode::too_large);
-  }
-  return source.error("cannot be read", ErrorCode::unsupported);
-}
-
 // What people have at hand besides meshes, by the first bytes.
 Error not_a_mesh(const Source& source) {
   struct Known {
@@ -61,6 +37,31 @@ Error not_a_mesh(const Source& source) {
                       ErrorCode::unsupported);
 }
 
+Result<PolygonMesh> read_as(MeshFormat format, const Source& source,
+                            const std::optional<std::filesystem::path>& folder) {
+  if (source.bytes.empty()) {
+    return source.error("the file is empty; export the model again");
+  }
+  try {
+    switch (format) {
+    case MeshFormat::obj:
+      return read_obj(source);
+    case MeshFormat::off:
+      return read_off(source);
+    case MeshFormat::ply:
+      return read_ply(source);
+    case MeshFormat::stl:
+      return read_stl(source);
+    case MeshFormat::gltf:
+      return read_gltf(source, folder);
+    }
+  } catch (const std::bad_alloc&) {
+    return source.error("there is not enough memory for the mesh; simplify the model",
+                        ErrorCode::too_large);
+  }
+  return not_a_mesh(source); // only for a value outside the enumeration
+}
+
 } // namespace
 
 void normalize_colors(PolygonMesh& mesh) {
@@ -79,7 +80,7 @@ void normalize_colors(PolygonMesh& mesh) {
 }
 
 Result<PolygonMesh> read_mesh(std::string_view bytes, MeshFormat format, std::string_view name) {
-  return read_as(format, Source{name, bytes});
+  return read_as(format, Source{name, bytes}, {});
 }
 
 Result<PolygonMesh> read_mesh(const std::filesystem::path& path) {
@@ -97,7 +98,7 @@ Result<PolygonMesh> read_mesh(const std::filesystem::path& path) {
     return source.bytes.empty() ? source.error("the file is empty; export the model again")
                                 : not_a_mesh(source);
   }
-  return read_as(*format, source);
+  return read_as(*format, source, path.parent_path());
 }
 
 } // namespace cagewright

@@ -64,8 +64,9 @@ private:
   [[nodiscard]] std::string not_obj(std::size_t offset) const {
     TextCursor at = cursor_;
     at.move_to(offset);
-    return quoted(at.peek_word()) + " is no OBJ statement, and the file has no faces; check that "
-                                    "this is an OBJ file";
+    return in_quotes(at.peek_word()) +
+           " is no OBJ statement, and the file has no faces; check that "
+           "this is an OBJ file";
   }
 
   // v x y z, then nothing, a weight (ignored), or a colour: r g b or r g b a.
@@ -75,7 +76,7 @@ private:
     for (cursor_.skip_blanks(); !cursor_.at_line_end() && count < 7; cursor_.skip_blanks()) {
       const std::optional<double> value = count < 3 ? cursor_.number() : cursor_.any_number();
       if (!value) {
-        return cursor_.error(quoted(cursor_.peek_word()) + " is not a finite number" +
+        return cursor_.error(in_quotes(cursor_.peek_word()) + " is not a finite number" +
                              std::string(export_again));
       }
       values[count++] = *value;
@@ -138,7 +139,7 @@ private:
                                    no_such_vertex("face", one_line(digits, 40),
                                                   static_cast<std::size_t>(vertices_in_file())));
     }
-    return source_.error_in_line(word, quoted(text) + " is not a corner of a face" +
+    return source_.error_in_line(word, in_quotes(text) + " is not a corner of a face" +
                                            std::string(export_again));
   }
 

@@ -183,7 +183,7 @@ private:
   }
 
   std::string found_here() {
-    return cursor_.at_line_end() ? "nothing" : quoted(cursor_.peek_word());
+    return cursor_.at_line_end() ? "nothing" : in_quotes(cursor_.peek_word());
   }
 
   Error ends_early(std::size_t have, std::string_view noun, std::size_t want) {

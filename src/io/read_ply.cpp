@@ -93,7 +93,7 @@ public:
   [[nodiscard]] Error bad_value(const std::string& where) const {
     return cursor_.at_line_end()
                ? cursor_.error("the line ends within " + where + std::string(export_again))
-               : cursor_.error(quoted(cursor_.peek_word()) + " is not a number" +
+               : cursor_.error(in_quotes(cursor_.peek_word()) + " is not a number" +
                                std::string(export_again));
   }
 
@@ -194,7 +194,7 @@ private:
     }
     if (row != 0 && element.count > values_.remaining() / row) {
       return source_.error("the header promises " + std::to_string(element.count) +
-                           " rows of the element " + quoted(element.name) +
+                           " rows of the element " + in_quotes(element.name) +
                            ", but the file ends before; it is cut short" +
                            std::string(export_again));
     }
@@ -212,7 +212,7 @@ private:
       if (!values_.begin_row()) {
         return values_.error("the file ends after " + std::to_string(row_) + " of " +
                              std::to_string(element.count) + " rows of the element " +
-                             quoted(element.name) + "; it is cut short" +
+                             in_quotes(element.name) + "; it is cut short" +
                              std::string(export_again));
       }
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
@@ -275,7 +275,7 @@ private:
       constexpr std::array<std::string_view, 3> names = {"x", "y", "z"};
       const std::optional<std::size_t> axis = find_scalar(element, names[i]);
       if (!axis) {
-        return source_.error("the element 'vertex' has no property " + quoted(names[i]) +
+        return source_.error("the element 'vertex' has no property " + in_quotes(names[i]) +
                              std::string(export_again));
       }
       axes[i] = *axis;
@@ -322,8 +322,8 @@ private:
     std::optional<std::size_t> corners = element.find("vertex_indices");
     corners = corners ? corners : element.find("vertex_index");
     if (!corners || !element.properties[*corners].count_type) {
-      return source_.error("the element " + quoted(element.name) + " has no list 'vertex_indices'" +
-                           std::string(export_again));
+      return source_.error("the element " + in_quotes(element.name) +
+                           " has no list 'vertex_indices'" + std::string(export_again));
     }
     return read_rows(element, corners, use);
   }
@@ -379,7 +379,7 @@ private:
   }
 
   [[nodiscard]] std::string row_name(const PlyElement& element) const {
-    return "row " + std::to_string(row_) + " of the element " + quoted(element.name);
+    return "row " + std::to_string(row_) + " of the element " + in_quotes(element.name);
   }
 
   static std::string number_text(double value) {

@@ -109,7 +109,7 @@ private:
       // The normal follows from the corners, and some programs write nan.
       corners_ = 0;
     } else if (keyword != "outer") {
-      return source_.error_in_line(begin, quoted(keyword) + " is no STL statement" +
+      return source_.error_in_line(begin, in_quotes(keyword) + " is no STL statement" +
                                               std::string(export_again));
     }
     cursor_.next_line();
@@ -124,7 +124,7 @@ private:
       if (!value) {
         return cursor_.error((cursor_.at_line_end()
                                   ? "a vertex needs 3 coordinates"
-                                  : quoted(cursor_.peek_word()) + " is not a finite number") +
+                                  : in_quotes(cursor_.peek_word()) + " is not a finite number") +
                              std::string(export_again));
       }
       coordinate = *value;

@@ -7,7 +7,9 @@
 #include "mesh/polygon_mesh.h"
 
 #include <array>
+#include <filesystem>
 #include <limits>
+#include <optional>
 
 namespace cagewright {
 
@@ -15,6 +17,10 @@ Result<PolygonMesh> read_obj(const Source& source);
 Result<PolygonMesh> read_off(const Source& source);
 Result<PolygonMesh> read_ply(const Source& source);
 Result<PolygonMesh> read_stl(const Source& source);
+
+/// `folder` is where the buffers in files of their own are; none: they are refused.
+Result<PolygonMesh> read_gltf(const Source& source,
+                              const std::optional<std::filesystem::path>& folder);
 
 /// The largest value of a channel, whatever the scale: for what a file leaves out.
 inline constexpr float full_channel = std::numeric_limits<float>::infinity();

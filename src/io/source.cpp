@@ -12,7 +12,7 @@ std::string one_line(std::string_view text, std::size_t limit) {
   return text.size() > limit ? line + "..." : line;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string shown = one_line(text, 40);
   std::replace_if(
       shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; },

@@ -15,7 +15,7 @@ namespace cagewright {
 std::string one_line(std::string_view text, std::size_t limit = 4096);
 
 /// A piece of the file in quotes, short enough for a message.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// "1 face", "3 faces".
 std::string counted(std::size_t count, std::string_view noun);

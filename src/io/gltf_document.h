@@ -1,0 +1,78 @@
+/// \file
+/// The parts of a glTF file below the scene: container, JSON, buffers and accessors.
+#pragma once
+
+#include "core/result.h"
+#include "io/read_file.h"
+#include "io/source.h"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cagewright {
+
+// nlohmann's parser with checked access on top, not tinygltf: that one loads images and materials
+// which are of no use here, and reads what an accessor says without asking whether it can be true.
+using Json = nlohmann::json;
+
+/// The member of an object, or null where there is none or `object` is no object.
+const Json& member(const Json& object, const char* key);
+
+/// The element of an array, or null where there is none or `array` is no array.
+const Json& element(const Json& array, std::size_t index);
+
+/// A non-negative whole number up to 2^53, also when it is written as 3.0; none for anything else.
+std::optional<std::size_t> to_size(const Json& value);
+
+/// The text, or an empty one for anything else.
+std::string to_text(const Json& value);
+
+/// A glTF file, its buffers loaded on demand.
+class GltfDocument {
+public:
+  /// Opens the container and parses the JSON. Buffers in other files are looked for in `folder`;
+  /// without one they are refused.
+  static Result<GltfDocument> open(const Source& source,
+                                   std::optional<std::filesystem::path> folder);
+
+  [[nodiscard]] const Json& json() const { return json_; }
+  [[nodiscard]] const Source& source() const { return source_; }
+
+  /// Reads an accessor of N components per element, as doubles (normalized integers as fractions).
+  /// Sparse values are applied. Errors: malformed, unsupported, cannot_open.
+  Result<std::vector<double>> read_vectors(std::size_t accessor, std::size_t components);
+
+  /// Reads an accessor of unsigned integers.
+  Result<std::vector<std::uint32_t>> read_indices(std::size_t accessor);
+
+private:
+  struct Layout; // where the elements of an accessor lie
+  struct Slice {
+    std::string_view bytes; // from the first element to the end of the view
+    std::size_t stride = 0;
+  };
+
+  Result<std::string_view> buffer(std::size_t index);
+  Result<std::string> load_buffer(const Json& buffer, const std::string& where);
+  Result<Slice> slice(const Json& view_index, std::size_t offset, const Layout& layout,
+                      bool may_interleave, const std::string& where);
+  Result<Layout> layout_of(const Json& accessor, std::size_t components,
+                           const std::string& where) const;
+  Status apply_sparse(const Json& sparse, const Layout& layout, const std::string& where,
+                      std::vector<double>& values);
+
+  Source source_;
+  std::optional<std::filesystem::path> folder_;
+  Json json_;
+  std::string_view binary_chunk_;
+  std::vector<std::optional<std::string>> loaded_; // buffers that are not the binary chunk
+};
+
+} // namespace cagewright
