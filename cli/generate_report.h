@@ -1,0 +1,23 @@
+/// \file
+/// What `generate` says about its work: a summary for people, JSON for programs.
+#pragma once
+
+#include "cage/generate.h"
+#include "validate/cage_metrics.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace cagewright::cli {
+
+/// Boxes, cuts, f(x) of every box and axis, in the model's own units.
+nlohmann::json to_json(const BoxDecomposition& boxes, const std::vector<int>& cover);
+
+/// The same, and the cage: its figures, the registration, the times.
+nlohmann::json to_json(const GeneratedCage& made, const CageMetrics& metrics);
+
+std::string summary(const BoxDecomposition& boxes, const std::vector<int>& cover);
+std::string summary(const GeneratedCage& made, const CageMetrics& metrics);
+
+} // namespace cagewright::cli

@@ -1,0 +1,59 @@
+#include "cage/decompose.h"
+
+#include "obb/principal_axes.h"
+#include "voxel/bridge.h"
+#include "voxel/point_set.h"
+#include "voxel/voxelize.h"
+
+#include <utility>
+
+namespace cagewright {
+
+Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& options,
+                                   const Progress& progress) {
+  if (options.resolution < 8 || options.resolution > 512) {
+    return Error{ErrorCode::invalid_option, "resolution must be from 8 to 512"};
+  }
+  const Result<UnitFrame> frame = unit_frame(model);
+  if (!frame) {
+    return frame.error();
+  }
+  BoxDecomposition made;
+  made.frame = *frame;
+  Stopwatch watch(made.times);
+  const std::vector<Vec3> positions = to_unit(*frame, model.positions);
+  const TriangleView unit{positions, model.triangles};
+  const VoxelizeOptions voxels{.resolution = options.resolution};
+
+  made.vertex_box = pca_box(positions);
+  Result<VoxelGrid> first = voxelize(unit, made.vertex_box, voxels, progress.part(0, 0.4));
+  if (!first) {
+    return first.error();
+  }
+  made.point_box = pca_box(point_set(unit, *first));
+  watch.lap("first voxels");
+
+  Result<VoxelGrid> second = voxelize(unit, made.point_box, voxels, progress.part(0.4, 0.8));
+  if (!second) {
+    return second.error();
+  }
+  made.grid = std::move(*second);
+  if (options.pieces == Pieces::together) {
+    made.bridges = join_pieces(made.grid);
+  }
+  watch.lap("voxels");
+
+  Result<BoxTree> tree = build_box_tree(made.grid, options.slicing, progress.part(0.8, 1));
+  if (!tree) {
+    return tree.error();
+  }
+  made.tree = std::move(*tree);
+  watch.lap("slicing");
+  return made;
+}
+
+OrientedBox in_model_units(const UnitFrame& frame, const OrientedBox& box) {
+  return {frame.from_unit(box.center), box.axes, box.half * frame.diagonal};
+}
+
+} // namespace cagewright
