@@ -10,9 +10,10 @@
 namespace cagewright {
 
 struct MinimumBoxOptions {
-  /// Frames to start from besides the principal axes and the world's: the more, the surer that the
-  /// best box is found. 0 is for thousands of boxes, 100 for one whose volume is to be quoted.
-  int extra_starts = 0;
+  /// Frames to start from besides the principal axes and the world's. More find the best box more
+  /// surely: against a long search, boxes of 34 models were at worst 6 % larger with 0 (2 % for
+  /// nine in ten), 0.8 % with 8 and 0.1 % with 100, save that an octahedron took 1,000.
+  int extra_starts = 8;
   std::span<const Mat3> seeds; ///< further frames to start from: orthonormal columns
 };
 
@@ -23,12 +24,11 @@ struct MinimumBoxOptions {
 /// From each start the box is improved about one axis at a time: seen along the axis, the points
 /// have a rectangle of least area, which rotating calipers find among those flush with an edge of
 /// their convex hull (Freeman and Shapira 1975); it is repeated until no axis gains. That is done
-/// on a small subset of the points, to which the extreme ones of every box tried are added until
-/// the subset's box is the box of all. The result is the same for the same points; no hull in 3D is
-/// made.
+/// on a small core of the points, to which the extreme ones of each box so found are added until
+/// the core's box is that of all points. No hull in 3D is made. The same points give the same box.
 ///
-/// Cost: some tens of O(N) passes for each start; about 0.1 ms for 2,000 points with extra_starts
-/// 0.
+/// Cost: some ten passes over the points, and about 0.03 ms for each start: 0.5 ms for 2,000 points
+/// with the defaults.
 OrientedBox minimum_box(std::span<const Vec3> points, const MinimumBoxOptions& options = {});
 
 } // namespace cagewright
