@@ -38,10 +38,16 @@ int fail(const Error& error);
 /// then renames.
 Status write_text_file(const std::string& path, const std::string& text);
 
+#ifdef CAGEWRIGHT_HAS_RENDER
+#define CAGEWRIGHT_RENDER_COMMAND(X) X(render)
+#else
+#define CAGEWRIGHT_RENDER_COMMAND(X)
+#endif
+
 // One function for each command, in cli/commands/<name>.cpp: it declares the options and what to
 // run. The order is that of --help.
 #define CAGEWRIGHT_COMMANDS(X) \
-  X(info)
+  X(info) CAGEWRIGHT_RENDER_COMMAND(X)
 #define CAGEWRIGHT_DECLARE(name) void add_##name(CLI::App& app, Session& session);
 CAGEWRIGHT_COMMANDS(CAGEWRIGHT_DECLARE)
 #undef CAGEWRIGHT_DECLARE
