@@ -63,6 +63,11 @@ std::optional<MeshFormat> format_of_content(std::string_view bytes) {
   if (word.starts_with('{')) {
     return MeshFormat::gltf;
   }
+  constexpr auto obj_words =
+      std::to_array<std::string_view>({"v", "vt", "vn", "f", "o", "g", "s", "mtllib", "usemtl"});
+  if (std::find(obj_words.begin(), obj_words.end(), word) != obj_words.end()) {
+    return MeshFormat::obj;
+  }
   return std::nullopt;
 }
 

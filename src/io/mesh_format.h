@@ -37,8 +37,8 @@ constexpr std::string_view name_of(MeshFormat format) {
 /// .off, .glb, .gltf); none for other extensions.
 std::optional<MeshFormat> format_of_name(const std::filesystem::path& path);
 
-/// The format that a file's first bytes prove, whatever its name says; none when they prove
-/// nothing, as an OBJ file has no mark of its own.
+/// The format that a file's first bytes show, whatever its name says; none when they show nothing:
+/// an OBJ file has no mark of its own, and only its first word may tell.
 std::optional<MeshFormat> format_of_content(std::string_view bytes);
 
 } // namespace cagewright

@@ -79,6 +79,9 @@ private:
     if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) {
       return success();
     }
+    if (header_.elements.empty()) {
+      return success(); // Blender 2.4 wrote a comment without the word; later it would be a danger
+    }
     return wrong(in_quotes(keyword) + " is no PLY header statement");
   }
 

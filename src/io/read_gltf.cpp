@@ -35,10 +35,6 @@ public:
     if (!mesh_.colors.empty()) {
       mesh_.colors.resize(mesh_.positions.size(), {1, 1, 1, 1});
     }
-    if (mesh_.group_names.size() < 2) { // one part is the whole
-      mesh_.group_names.clear();
-      mesh_.face_groups.clear();
-    }
     return std::move(mesh_);
   }
 

@@ -6,33 +6,44 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <string>
 
 namespace cagewright {
 namespace {
 
 // What people have at hand besides meshes, by the first bytes.
-Error not_a_mesh(const Source& source) {
-  struct Known {
-    std::string_view begin;
-    std::string_view name;
-    std::string_view remedy;
-  };
-  constexpr Known known[] = {
-      {"\x1f\x8b", "a gzip archive", "unpack it first"},
-      {"PK\x03\x04", "a zip archive", "unpack it first"},
-      {"Kaydara FBX", "an FBX file", "export the model as OBJ or GLB"},
-      {"; FBX", "an FBX file", "export the model as OBJ or GLB"},
-      {"BLENDER", "a Blender file", "export the model as OBJ or GLB"},
-      {"\xff\xfe", "a text in UTF-16", "save it as UTF-8"},
-      {"<?xml", "an XML file", "export the model as OBJ or GLB"},
-  };
-  for (const Known& kind : known) {
+struct Foreign {
+  std::string_view begin;
+  std::string_view name;
+  std::string_view remedy;
+};
+constexpr Foreign foreign_files[] = {
+    {"\x1f\x8b", "a gzip archive", "unpack it first"},
+    {"PK\x03\x04", "a zip archive", "unpack it first"},
+    {"Kaydara FBX", "an FBX file", "export the model as OBJ or GLB"},
+    {"; FBX", "an FBX file", "export the model as OBJ or GLB"},
+    {"BLENDER", "a Blender file", "export the model as OBJ or GLB"},
+    {"<?xml", "an XML file", "export the model as OBJ or GLB"},
+    {"\xff\xfe", "a text in UTF-16", "save it as UTF-8"},
+    {"\xfe\xff", "a text in UTF-16", "save it as UTF-8"},
+};
+
+std::optional<Error> foreign_file(const Source& source) {
+  for (const Foreign& kind : foreign_files) {
     if (source.bytes.starts_with(kind.begin)) {
       return source.error("is " + std::string(kind.name) + "; " + std::string(kind.remedy),
                           ErrorCode::unsupported);
     }
   }
+  return std::nullopt;
+}
+
+Error is_empty(const Source& source) {
+  return source.error("the file is empty" + std::string(export_again));
+}
+
+Error unknown_format(const Source& source) {
   return source.error("is no mesh in a known format; use OBJ, PLY, STL, OFF, GLB or glTF",
                       ErrorCode::unsupported);
 }
@@ -40,7 +51,7 @@ Error not_a_mesh(const Source& source) {
 Result<PolygonMesh> read_as(MeshFormat format, const Source& source,
                             const std::optional<std::filesystem::path>& folder) {
   if (source.bytes.empty()) {
-    return source.error("the file is empty; export the model again");
+    return is_empty(source);
   }
   try {
     switch (format) {
@@ -59,7 +70,7 @@ Result<PolygonMesh> read_as(MeshFormat format, const Source& source,
     return source.error("there is not enough memory for the mesh; simplify the model",
                         ErrorCode::too_large);
   }
-  return not_a_mesh(source); // only for a value outside the enumeration
+  return unknown_format(source); // only for a value outside the enumeration
 }
 
 } // namespace
@@ -90,15 +101,17 @@ Result<PolygonMesh> read_mesh(const std::filesystem::path& path) {
   }
   const std::string name = path.string();
   const Source source{name, file->view()};
+  if (source.bytes.empty()) {
+    return is_empty(source);
+  }
   std::optional<MeshFormat> format = format_of_content(source.bytes);
   if (!format) {
+    if (const std::optional<Error> error = foreign_file(source)) {
+      return *error;
+    }
     format = format_of_name(path);
   }
-  if (!format) {
-    return source.bytes.empty() ? source.error("the file is empty; export the model again")
-                                : not_a_mesh(source);
-  }
-  return read_as(*format, source, path.parent_path());
+  return format ? read_as(*format, source, path.parent_path()) : unknown_format(source);
 }
 
 } // namespace cagewright

@@ -199,6 +199,113 @@ private:
   std::vector<Index> corners_;
 };
 
+// The same numbers as big-endian floats and 32-bit integers; each face ends with a count of colour
+// channels and those.
+class OffBinaryReader {
+public:
+  OffBinaryReader(const Source& source, std::size_t begin, OffHeader header)
+      : source_(source), at_(begin), header_(header) {}
+
+  Result<PolygonMesh> read() {
+    const std::size_t begin = at_;
+    const std::optional<std::uint32_t> vertices = integer();
+    const std::optional<std::uint32_t> faces = integer();
+    const std::optional<std::uint32_t> edges = integer();
+    const std::size_t vertex_size = 12 + (header_.has_normal ? 12 : 0) +
+                                    (header_.has_color ? 16 : 0) + (header_.has_texture ? 8 : 0);
+    if (!edges || remaining() < *vertices * vertex_size ||
+        remaining() - *vertices * vertex_size < std::size_t{8} * *faces) {
+      return source_.error_at_byte(begin, "the file ends before the vertices and faces that the "
+                                          "header promises; it is cut short" +
+                                              std::string(export_again));
+    }
+    mesh_.positions.reserve(*vertices);
+    for (std::size_t v = 0; v < *vertices; ++v, at_ += vertex_size) {
+      if (const Status status = read_vertex(v); !status) {
+        return status.error();
+      }
+    }
+    for (std::size_t f = 0; f < *faces; ++f) {
+      if (const Status status = read_face(f); !status) {
+        return status.error();
+      }
+    }
+    if (mesh_.face_count() == 0) {
+      return no_faces(source_);
+    }
+    normalize_colors(mesh_);
+    return std::move(mesh_);
+  }
+
+private:
+  Status read_vertex(std::size_t v) {
+    const char* from = source_.bytes.data() + at_;
+    const auto value = [&](std::size_t i) { return load<float>(from + 4 * i, std::endian::big); };
+    const Vec3 p(value(0), value(1), value(2));
+    if (!p.allFinite()) {
+      return source_.error_at_byte(at_, "vertex " + std::to_string(v) +
+                                            " has a coordinate that is not a finite number" +
+                                            std::string(export_again));
+    }
+    mesh_.positions.push_back(p);
+    if (header_.has_color) {
+      const std::size_t color = header_.has_normal ? 6 : 3;
+      mesh_.colors.push_back({value(color), value(color + 1), value(color + 2), value(color + 3)});
+    }
+    return success();
+  }
+
+  Status read_face(std::size_t f) {
+    const std::size_t begin = at_;
+    const std::uint32_t count = integer().value_or(0);
+    if (count == 0 || count > remaining() / 4) {
+      return cut_short(begin, f);
+    }
+    corners_.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t vertex = *integer();
+      if (vertex >= mesh_.positions.size()) {
+        return source_.error_at_byte(begin, no_such_vertex("face " + std::to_string(f),
+                                                           std::to_string(vertex),
+                                                           mesh_.positions.size()));
+      }
+      corners_.push_back(vertex);
+    }
+    const std::optional<std::uint32_t> channels = integer();
+    if (!channels || *channels > remaining() / 4) {
+      return cut_short(begin, f);
+    }
+    at_ += std::size_t{4} * *channels;
+    if (is_surface(corners_.size())) {
+      mesh_.add_face(corners_);
+    }
+    return success();
+  }
+
+  [[nodiscard]] Error cut_short(std::size_t begin, std::size_t f) const {
+    return source_.error_at_byte(begin, "face " + std::to_string(f) +
+                                            " has no corners or more than the file holds; it is "
+                                            "damaged" +
+                                            std::string(export_again));
+  }
+
+  [[nodiscard]] std::size_t remaining() const { return source_.bytes.size() - at_; }
+
+  std::optional<std::uint32_t> integer() {
+    if (remaining() < 4) {
+      return std::nullopt;
+    }
+    at_ += 4;
+    return load<std::uint32_t>(source_.bytes.data() + at_ - 4, std::endian::big);
+  }
+
+  Source source_;
+  std::size_t at_;
+  OffHeader header_;
+  PolygonMesh mesh_;
+  std::vector<Index> corners_;
+};
+
 } // namespace
 
 Result<PolygonMesh> read_off(const Source& source) {
@@ -211,6 +318,11 @@ Result<PolygonMesh> read_off(const Source& source) {
       return cursor.error("points of other than 3 coordinates are not supported; export the model "
                           "in 3 dimensions");
     }
+  }
+  cursor.skip_blanks();
+  if (header && cursor.peek_word() == "BINARY") {
+    cursor.next_line();
+    return OffBinaryReader(source, cursor.offset(), *header).read();
   }
   return OffReader(source, cursor, header.value_or(OffHeader{})).read(); // the word is optional
 }
