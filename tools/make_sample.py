@@ -17,9 +17,9 @@ import pathlib
 import sys
 from math import sqrt
 
-CELL = 0.05  # edge of a grid cell; the creature is about 2.3 high
-LOW = (-0.12, -1.95)  # lowest y and z of the grid; x begins at 0
-HIGH = (1.2, 2.6, 0.9)  # highest x, y, z
+CELL = 0.046  # edge of a grid cell; the creature is about 2.1 high
+LOW = (-0.12, -1.6)  # lowest y and z of the grid; x begins at 0
+HIGH = (1.05, 2.25, 0.95)  # highest x, y, z
 RELAXATION_ROUNDS = 14
 
 # ------------------------------------------------------------------ the shape
@@ -57,32 +57,55 @@ def ellipsoid(center, radii):
     return distance
 
 
+def smooth_curve(points, steps=4):
+    """A Catmull-Rom curve through points of any dimension."""
+    points = [tuple(2 * a - b for a, b in zip(points[0], points[1]))] + list(points)
+    points.append(tuple(2 * a - b for a, b in zip(points[-1], points[-2])))
+    curve = [points[1]]
+    for p, q, r, s in zip(points, points[1:], points[2:], points[3:]):
+        for n in range(1, steps + 1):
+            t = n / steps
+            curve.append(tuple(
+                0.5 * (2 * b + t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a))))
+                for a, b, c, d in zip(p, q, r, s)))
+    return curve
+
+
+def limb(points, radii):
+    """A bent rod of varying radius."""
+    curve = smooth_curve([(*p, r) for p, r in zip(points, radii)])
+    pieces = [capsule(a[:3], b[:3], a[3], b[3]) for a, b in zip(curve, curve[1:])]
+    return lambda x, y, z: min([piece(x, y, z) for piece in pieces])
+
+
 def mirrored(point):
     return (-point[0], point[1], point[2])
 
 
 class Shape:
-    """Parts joined one after the other, each with its own radius of blending."""
+    """Parts joined one after the other, each with its own radius of blending. Parts off the plane
+    of symmetry come in pairs."""
 
     def __init__(self):
         self.parts = []  # (distance function, blend; negative: carve instead of join)
+
+    def limb(self, points, radii, blend):
+        self.parts.append((limb(points, radii), blend))
+        if any(p[0] != 0 for p in points):
+            self.parts.append((limb([mirrored(p) for p in points], radii), blend))
 
     def rod(self, a, b, radius_a, radius_b, blend):
         self.parts.append((capsule(a, b, radius_a, radius_b), blend))
         if a[0] != 0 or b[0] != 0:
             self.parts.append((capsule(mirrored(a), mirrored(b), radius_a, radius_b), blend))
 
-    def chain(self, points, radii, blend):
-        for i in range(len(points) - 1):
-            self.rod(points[i], points[i + 1], radii[i], radii[i + 1], blend)
-
     def ball(self, center, radii, blend):
         self.parts.append((ellipsoid(center, radii), blend))
         if center[0] != 0:
             self.parts.append((ellipsoid(mirrored(center), radii), blend))
 
-    def carve(self, a, b, radius_a, radius_b, blend):
-        self.rod(a, b, radius_a, radius_b, -blend)
+    def carve(self, points, radii, blend):
+        self.limb(points, radii, -blend)
 
     def near(self, x, y, z, reach=0.5):
         """The parts that can matter within a small step of the point, as a shape."""
@@ -111,61 +134,61 @@ class Shape:
 
 def creature():
     s = Shape()
-    # trunk: a pear, heavier at the hips, with a round belly
-    s.ball((0, 0.80, 0.00), (0.37, 0.40, 0.36), 0.1)
-    s.rod((0, 0.85, 0.02), (0, 1.22, -0.02), 0.33, 0.23, 0.16)
-    s.ball((0, 0.80, 0.15), (0.27, 0.31, 0.25), 0.12)
-    s.rod((0, 1.20, -0.03), (0, 1.55, 0.02), 0.21, 0.18, 0.12)
+    # trunk: a pear with a round belly
+    s.ball((0, 0.55, 0.00), (0.30, 0.31, 0.29), 0.1)
+    s.rod((0, 0.60, 0.00), (0, 0.88, -0.02), 0.27, 0.20, 0.12)
+    s.ball((0, 0.55, 0.12), (0.23, 0.25, 0.21), 0.10)
+    s.rod((0, 0.85, -0.02), (0, 1.10, 0.02), 0.19, 0.18, 0.08)
     # tail: down, back and up again, with a leaf at its end
-    s.chain(
-        [(0, 0.66, -0.22), (0, 0.43, -0.62), (0, 0.29, -1.00), (0, 0.33, -1.34), (0, 0.56, -1.58),
-         (0, 0.80, -1.63)],
-        [0.27, 0.19, 0.135, 0.10, 0.08, 0.065], 0.10)
-    s.ball((0, 0.96, -1.62), (0.145, 0.17, 0.075), 0.07)
-    s.rod((0, 1.02, -1.62), (0, 1.19, -1.58), 0.075, 0.035, 0.06)
+    s.limb(
+        [(0, 0.48, -0.14), (0, 0.31, -0.46), (0, 0.20, -0.78), (0, 0.23, -1.09), (0, 0.43, -1.30), (0, 0.68, -1.34)],
+        [0.24, 0.185, 0.14, 0.11, 0.085, 0.07], 0.12)
+    s.limb([(0, 0.70, -1.34), (0, 0.83, -1.33), (0, 0.97, -1.30), (0, 1.08, -1.25)], [0.06, 0.12, 0.09, 0.05], 0.05)
+    s.limb([(0.03, 0.74, -1.335), (0.07, 0.83, -1.33), (0.05, 0.93, -1.31)], [0.06, 0.10, 0.065], 0.05)
     # legs
-    s.chain([(0.22, 0.66, 0.02), (0.33, 0.37, 0.10), (0.335, 0.13, 0.00)], [0.21, 0.15, 0.105], 0.10)
-    s.rod((0.335, 0.095, -0.03), (0.36, 0.085, 0.20), 0.10, 0.10, 0.07)
-    for toe_x, toe_z in ((0.265, 0.29), (0.365, 0.33), (0.465, 0.285)):
-        s.rod((0.355 + 0.3 * (toe_x - 0.355), 0.075, 0.18), (toe_x, 0.062, toe_z), 0.075, 0.058, 0.035)
+    s.limb([(0.17, 0.50, 0.00), (0.265, 0.30, 0.07), (0.28, 0.12, -0.01)], [0.20, 0.155, 0.115], 0.08)
+    s.rod((0.28, 0.11, -0.02), (0.30, 0.10, 0.17), 0.115, 0.11, 0.05)
+    s.rod((0.255, 0.085, 0.17), (0.205, 0.075, 0.275), 0.085, 0.068, 0.03)
+    s.rod((0.305, 0.085, 0.18), (0.315, 0.075, 0.315), 0.085, 0.068, 0.03)
+    s.rod((0.355, 0.085, 0.17), (0.425, 0.075, 0.265), 0.085, 0.066, 0.03)
     # arms, held away from the body, with a thumb and two fingers
-    s.chain([(0.16, 1.22, -0.02), (0.44, 1.10, -0.03), (0.70, 0.93, 0.05)], [0.15, 0.105, 0.085], 0.09)
-    s.ball((0.775, 0.875, 0.08), (0.10, 0.095, 0.09), 0.06)
-    s.rod((0.80, 0.86, 0.06), (0.925, 0.755, 0.045), 0.062, 0.045, 0.03)
-    s.rod((0.81, 0.88, 0.12), (0.915, 0.80, 0.19), 0.060, 0.045, 0.03)
-    s.rod((0.75, 0.90, 0.13), (0.745, 0.865, 0.245), 0.055, 0.042, 0.03)
+    s.limb([(0.13, 0.90, -0.02), (0.40, 0.80, -0.04), (0.64, 0.61, 0.04)], [0.14, 0.10, 0.085], 0.08)
+    s.ball((0.695, 0.565, 0.065), (0.105, 0.10, 0.10), 0.05)
+    s.rod((0.72, 0.55, 0.04), (0.845, 0.45, 0.015), 0.070, 0.056, 0.025)
+    s.rod((0.72, 0.55, 0.10), (0.815, 0.455, 0.175), 0.070, 0.056, 0.025)
+    s.rod((0.67, 0.58, 0.12), (0.645, 0.55, 0.245), 0.064, 0.052, 0.025)
     # head: a broad skull, cheeks, a snout and a chin
-    s.ball((0, 1.86, 0.06), (0.37, 0.32, 0.34), 0.12)
-    s.ball((0.20, 1.73, 0.20), (0.18, 0.15, 0.18), 0.12)
-    s.rod((0, 1.76, 0.30), (0, 1.745, 0.56), 0.20, 0.155, 0.12)
-    s.rod((0.07, 1.78, 0.52), (0.075, 1.80, 0.615), 0.085, 0.072, 0.07)  # nostrils' swelling
-    s.rod((0, 1.635, 0.30), (0, 1.625, 0.50), 0.13, 0.105, 0.06)
+    s.ball((0, 1.38, 0.02), (0.42, 0.36, 0.37), 0.08)
+    s.ball((0.22, 1.24, 0.16), (0.20, 0.17, 0.19), 0.10)
+    s.limb([(0, 1.27, 0.25), (0, 1.265, 0.45), (0, 1.27, 0.60)], [0.24, 0.205, 0.185], 0.10)
+    s.rod((0.085, 1.335, 0.58), (0.10, 1.37, 0.68), 0.095, 0.078, 0.06)  # the nostrils' swelling
+    s.rod((0, 1.16, 0.26), (0, 1.135, 0.51), 0.14, 0.13, 0.04)
     # a smile between snout and chin
-    s.carve((0.0, 1.672, 0.74), (0.13, 1.678, 0.63), 0.028, 0.028, 0.03)
-    s.carve((0.13, 1.678, 0.63), (0.235, 1.69, 0.42), 0.028, 0.028, 0.03)
-    s.carve((0.235, 1.69, 0.42), (0.325, 1.755, 0.33), 0.028, 0.022, 0.03)
-    s.carve((0.085, 1.825, 0.70), (0.09, 1.83, 0.74), 0.03, 0.035, 0.02)  # nostrils
-    # eyes and brows
-    s.ball((0.175, 1.965, 0.275), (0.118, 0.128, 0.115), 0.03)
-    s.rod((0.10, 2.10, 0.24), (0.28, 2.075, 0.20), 0.055, 0.05, 0.06)
+    s.carve([(-0.17, 1.165, 0.69), (0, 1.145, 0.80), (0.17, 1.165, 0.69)], [0.045, 0.045, 0.045], 0.025)
+    s.carve([(0.10, 1.15, 0.76), (0.22, 1.16, 0.60), (0.30, 1.18, 0.44), (0.405, 1.275, 0.33)],
+            [0.045, 0.048, 0.046, 0.032], 0.025)
+    s.carve([(0.115, 1.40, 0.74), (0.125, 1.41, 0.80)], [0.030, 0.040], 0.025)  # nostrils
+    # eyes
+    s.ball((0.22, 1.545, 0.285), (0.14, 0.16, 0.125), 0.02)
     # ears, then horns that sweep back and up
-    s.chain([(0.32, 1.90, -0.03), (0.47, 1.97, -0.12), (0.60, 2.07, -0.20)], [0.09, 0.085, 0.035], 0.05)
-    s.chain([(0.15, 2.10, -0.06), (0.205, 2.26, -0.15), (0.225, 2.36, -0.28), (0.215, 2.47, -0.37)],
-            [0.10, 0.078, 0.058, 0.034], 0.05)
+    s.limb([(0.36, 1.42, -0.04), (0.53, 1.47, -0.12), (0.66, 1.55, -0.19), (0.77, 1.66, -0.25)],
+           [0.09, 0.125, 0.108, 0.055], 0.05)
+    s.carve([(0.51, 1.475, 0.035), (0.64, 1.545, -0.045)], [0.060, 0.060], 0.05)
+    s.limb([(0.18, 1.64, -0.06), (0.235, 1.81, -0.10), (0.27, 1.95, -0.21), (0.265, 2.05, -0.36)],
+           [0.12, 0.098, 0.08, 0.057], 0.04)
     # a row of soft spines from the crown to the tail
     for y, z, dy, dz, size in (
-        (2.13, -0.12, 0.13, -0.07, 0.080),
-        (1.98, -0.24, 0.11, -0.12, 0.085),
-        (1.70, -0.16, 0.07, -0.15, 0.080),
-        (1.43, -0.19, 0.07, -0.15, 0.090),
-        (1.14, -0.27, 0.08, -0.16, 0.100),
-        (0.86, -0.36, 0.11, -0.16, 0.105),
-        (0.65, -0.54, 0.15, -0.12, 0.095),
-        (0.50, -0.80, 0.16, -0.06, 0.085),
-        (0.415, -1.06, 0.145, 0.0, 0.072),
-        (0.42, -1.29, 0.11, 0.06, 0.060),
+        (1.69, -0.10, 0.13, -0.05, 0.085),
+        (1.56, -0.27, 0.11, -0.12, 0.090),
+        (1.30, -0.30, 0.04, -0.16, 0.090),
+        (1.03, -0.15, 0.06, -0.15, 0.085),
+        (0.80, -0.21, 0.07, -0.16, 0.095),
+        (0.60, -0.32, 0.11, -0.15, 0.100),
+        (0.46, -0.52, 0.15, -0.10, 0.092),
+        (0.36, -0.76, 0.15, -0.03, 0.082),
+        (0.33, -1.00, 0.13, 0.05, 0.070),
     ):
-        s.rod((0, y, z), (0, y + dy, z + dz), size, 0.4 * size, 0.05)
+        s.rod((0, y, z), (0, y + dy, z + dz), size, 0.55 * size, 0.04)
     return s
 
 
