@@ -135,6 +135,13 @@ Integer to_integer(double x) {
   return integer;
 }
 
+Integer determinant(const std::array<std::array<Integer, 3>, 3>& m) {
+  const Integer x = m[1][1] * m[2][2] - m[1][2] * m[2][1];
+  const Integer y = m[1][2] * m[2][0] - m[1][0] * m[2][2];
+  const Integer z = m[1][0] * m[2][1] - m[1][1] * m[2][0];
+  return m[0][0] * x + m[0][1] * y + m[0][2] * z;
+}
+
 int orient3d_integer(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   std::array<std::array<Integer, 3>, 3> m;
   const std::array<const Vec3*, 3> rows = {&b, &c, &d};
@@ -143,11 +150,7 @@ int orient3d_integer(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
       m[i][k] = to_integer((*rows[i])[k]) - to_integer(a[k]);
     }
   }
-  const Integer x = m[1][1] * m[2][2] - m[1][2] * m[2][1];
-  const Integer y = m[1][2] * m[2][0] - m[1][0] * m[2][2];
-  const Integer z = m[1][0] * m[2][1] - m[1][1] * m[2][0];
-  const Integer det = m[0][0] * x + m[0][1] * y + m[0][2] * z;
-  return det.sign();
+  return determinant(m).sign();
 }
 
 // ---- The plane, and segments in it
@@ -361,6 +364,39 @@ bool faces_cross(std::span<const Vec3> positions, const Triangle& a, const Trian
   // Coplanar: folded over when both lie on the same side of the shared edge.
   const Projection plane = project(v, w, p);
   return plane.turn == 0 || orient2d(v, w, r, plane.axis) != -plane.turn;
+}
+
+int volume_sign(TriangleView mesh) {
+  if (mesh.triangles.empty()) {
+    return 0;
+  }
+  // In doubles first: the sum of the determinants, and of their magnitudes to bound its error.
+  const Vec3 origin = mesh.positions[mesh.triangles[0][0]];
+  double sum_of_all = 0;
+  double magnitude = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 a = mesh.positions[t[0]] - origin;
+    const Vec3 b = mesh.positions[t[1]] - origin;
+    const Vec3 c = mesh.positions[t[2]] - origin;
+    sum_of_all += a.dot(b.cross(c));
+    magnitude += a.lpNorm<1>() * b.lpNorm<1>() * c.lpNorm<1>();
+  }
+  const double bound = 1.2e-16 * (static_cast<double>(mesh.triangles.size()) + 16) * magnitude;
+  if (std::abs(sum_of_all) > bound + 1e-150) {
+    return sum_of_all > 0 ? 1 : -1;
+  }
+  // Then exactly. The choice of the origin does not matter to a closed mesh.
+  Integer volume = 0;
+  for (const Triangle& t : mesh.triangles) {
+    std::array<std::array<Integer, 3>, 3> m;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        m[i][k] = to_integer(mesh.positions[t[i]][k]);
+      }
+    }
+    volume += determinant(m);
+  }
+  return volume.sign();
 }
 
 } // namespace cagewright

@@ -93,4 +93,8 @@ bool triangles_intersect(const Vec3 (&a)[3], const Vec3 (&b)[3]);
 /// corners neither should be degenerate: the answer may then be true where they only touch.
 bool faces_cross(std::span<const Vec3> positions, const Triangle& a, const Triangle& b);
 
+/// Sign of the volume that a closed, consistently oriented mesh encloses: 1 when it is oriented
+/// outward, -1 when inward, 0 when it encloses nothing. Of an open mesh the sign means nothing.
+int volume_sign(TriangleView mesh);
+
 } // namespace cagewright

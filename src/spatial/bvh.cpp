@@ -56,15 +56,12 @@ bool is_finite(const Vec3 (&t)[3]) {
 /// the float arithmetic is below the part taken off.
 template <class Node, class Box>
 void squared_distances(const Node& node, const Box& box, float (&result)[4]) {
-  for (int i = 0; i < 4; ++i) {
-    const float x =
-        std::max(std::max(node.low[0][i] - box.high[0], box.low[0] - node.high[0][i]), 0.0F);
-    const float y =
-        std::max(std::max(node.low[1][i] - box.high[1], box.low[1] - node.high[1][i]), 0.0F);
-    const float z =
-        std::max(std::max(node.low[2][i] - box.high[2], box.low[2] - node.high[2][i]), 0.0F);
-    result[i] = (x * x + y * y + z * z) * 0.999999F;
-  }
+  const auto gap = [&](int axis) -> Lanes {
+    const auto low = Lanes::Map(node.low[axis]);
+    const auto high = Lanes::Map(node.high[axis]);
+    return (low - box.high[axis]).max(box.low[axis] - high).max(0.0F);
+  };
+  Lanes::Map(result) = (gap(0).square() + gap(1).square() + gap(2).square()) * 0.999999F;
 }
 
 /// A node or triangle yet to be looked at, and how near it can be at best.
