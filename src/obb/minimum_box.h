@@ -14,7 +14,7 @@ struct MinimumBoxOptions {
   /// surely: against a long search, boxes of 34 models were at worst 6 % larger with 0 (2 % for
   /// nine in ten), 0.8 % with 8 and 0.1 % with 100, save that an octahedron took 1,000.
   int extra_starts = 8;
-  std::span<const Mat3> seeds; ///< further frames to start from: orthonormal columns
+  std::span<const Mat3> seeds = {}; ///< further frames to start from: orthonormal columns
 };
 
 /// A tight oriented box of the points with nearly the least volume; never more than the PCA box's.
