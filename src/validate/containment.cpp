@@ -50,19 +50,18 @@ std::optional<int> crossing(const Vec3& p, const Vec3& q, const Vec3& a, const V
 
 } // namespace
 
-Closure closure_of(const PolygonMesh& cage, const WeldedPoints& welded) {
+Closure closure_of(std::span<const Triangle> triangles) {
   struct Use {
     Index low;
     Index high;
     int way;
   };
   std::vector<Use> uses;
-  uses.reserve(cage.corners().size());
-  for (std::size_t f = 0; f < cage.face_count(); ++f) {
-    const std::span<const Index> face = cage.face(f);
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      const Index a = welded.point_of[face[i]];
-      const Index b = welded.point_of[face[(i + 1) % face.size()]];
+  uses.reserve(3 * triangles.size());
+  for (const Triangle& t : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = t[i];
+      const Index b = t[(i + 1) % 3];
       if (a != b) {
         uses.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
       }

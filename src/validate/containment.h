@@ -5,6 +5,7 @@
 #include "validate/cage_parts.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace cagewright {
@@ -20,7 +21,8 @@ enum class Closure {
   open,     ///< neither
 };
 
-Closure closure_of(const PolygonMesh& cage, const WeldedPoints& welded);
+/// Judged by the vertex indices.
+Closure closure_of(std::span<const Triangle> triangles);
 
 /// Tells where points lie with respect to a cage, exactly if it is not open.
 ///

@@ -241,7 +241,13 @@ private:
 
   /// Closed pieces: how many, each outward, none within another.
   void judge_pieces() {
-    closure_ = closure_of(cage_, parts_.welded);
+    std::vector<Triangle> first_cutting;
+    for (const CagePart& part : parts_.parts) {
+      if ((part.cuttings & 1U) != 0) {
+        first_cutting.push_back(part.corners);
+      }
+    }
+    closure_ = closure_of(first_cutting);
     weights_.assign(parts_.parts.size(), 1);
     const std::vector<Index> first_faces = first_faces_of_pieces();
     bool has_piece = false;

@@ -1,0 +1,43 @@
+/// \file
+/// How good a cage is, in numbers.
+#pragma once
+
+#include "mesh/triangle_mesh.h"
+#include "validate/model_volume.h"
+
+#include <cstddef>
+#include <optional>
+
+namespace cagewright {
+
+/// Figures of a cage of C vertices and F triangles. Distances are fractions of the diagonal of the
+/// model's bounding box, so that they do not depend on the unit; volumes are in the cube of the
+/// coordinates' unit.
+struct CageMetrics {
+  std::size_t vertices = 0;
+  std::size_t faces = 0;
+  double volume = 0; ///< signed: of a closed cage oriented outward, positive
+  double model_volume = 0;
+  VolumeMethod model_volume_method = VolumeMethod::none;
+  double volume_ratio = 0;     ///< volume / model_volume; 0 when the model has no volume
+  double clearance = 0;        ///< least distance between the two surfaces; 0 where they cross
+  double mean_distance = 0;    ///< from points of the cage to the model's nearest
+  double max_distance = 0;     ///< the same, the greatest; the cage's vertices are among the points
+  double min_quality = 0;      ///< least 2 r / R of a cage triangle: 1 equilateral, 0 degenerate
+  double low_quality = 0;      ///< 5th percentile of the same
+  std::size_t max_valence = 0; ///< most triangles at one vertex
+  double min_dihedral = 0;     ///< least angle between neighbors, in degrees: 180 flat, 0 folded
+};
+
+/// Measures a cage against its model.
+///
+/// The mean distance is over some 20,000 points spread evenly over the cage, always the same.
+///
+/// \param cage          C vertices, F triangles; it need not be valid
+/// \param model         V vertices, T triangles; without triangles all distances are 0
+/// \param model_volume  if it is known, to save its computation
+/// Cost: O((T + F) log(T + F)) time; parallel, the same on any number of threads.
+CageMetrics measure_cage(TriangleView cage, TriangleView model,
+                         const std::optional<ModelVolume>& model_volume = {});
+
+} // namespace cagewright
