@@ -128,7 +128,8 @@ int run(RenderCommand& command) {
 void add_render(CLI::App& app, Session& session) {
   auto command = std::make_shared<RenderCommand>();
   RenderOptions& options = command->options;
-  CLI::App* sub = app.add_subcommand("render", "Draw a model, and a cage over it, as a PNG picture");
+  CLI::App* sub =
+      app.add_subcommand("render", "Draw a model, and a cage over it, as a PNG picture");
   sub->add_option("model", command->model, "The model")->required();
   sub->add_option("cage", command->cage, "A cage to draw over it");
   sub->add_option("-o,--output", command->output, "The picture to write");

@@ -10,7 +10,9 @@
 namespace cagewright {
 namespace {
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+double radians(double degrees) {
+  return degrees * std::numbers::pi / 180;
+}
 
 Mat3 camera_axes(const View& view, UpAxis up) {
   const double yaw = radians(view.yaw_degrees);
@@ -44,6 +46,21 @@ struct Reach {
   [[nodiscard]] double center(double slope) const { return (high - low) * slope / 2; }
   [[nodiscard]] double distance() const { return (high + low) / 2; }
 };
+
+/// Shifts the camera sideways until the picture is as far from the frame's left as from its right,
+/// and likewise from top and bottom. The nearer a point, the more it shifts: hence in steps, each
+/// of which leaves about a fifth of the error.
+void center_picture(Camera& camera, const std::vector<Vec3>& points) {
+  for (int step = 0; step < 8; ++step) {
+    Eigen::AlignedBox2d picture;
+    for (const Vec3& point : points) {
+      const Vec3 p = camera.axes * point - camera.eye;
+      picture.extend(Eigen::Vector2d(p.x(), p.y()) / -p.z());
+    }
+    const double middle_depth = (camera.nearest + camera.farthest) / 2;
+    camera.eye.head<2>() += picture.center() * middle_depth;
+  }
+}
 
 } // namespace
 
@@ -96,6 +113,9 @@ Camera fitted_camera(const View& view, UpAxis up, double angle_degrees, double a
   camera.eye = {across.center(slope_x), upward.center(slope_y), distance};
   camera.nearest = std::max(distance - front - 0.05 * depth, 0.02 * depth);
   camera.farthest = distance - rear + 0.05 * depth;
+  if (!points.empty()) {
+    center_picture(camera, points);
+  }
   return camera;
 }
 

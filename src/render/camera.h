@@ -24,16 +24,17 @@ std::optional<View> view_named(std::string_view name);
 
 /// A pinhole camera.
 struct Camera {
-  Mat3 axes = Mat3::Identity();   ///< rows: right, up and backward in the model's coordinates
-  Vec3 eye = Vec3::Zero();        ///< along these axes
-  double tan_half_height = 0.25;  ///< of the angle of view
-  double nearest = 0.1;           ///< distance of the nearest thing to draw
+  Mat3 axes = Mat3::Identity();  ///< rows: right, up and backward in the model's coordinates
+  Vec3 eye = Vec3::Zero();       ///< along these axes
+  double tan_half_height = 0.25; ///< of the angle of view
+  double nearest = 0.1;          ///< distance of the nearest thing to draw
   double farthest = 10;
 };
 
 /// A camera looking along `view` whose picture of the points is as large as its frame of
 /// `aspect` (width over height) allows, `margin` (a fraction of the frame) left free on each side.
-/// No points: as for the origin. Cost: two passes over the points.
+/// The picture stands in the middle. No points: as for the origin. Cost: nine passes over the
+/// points.
 Camera fitted_camera(const View& view, UpAxis up, double angle_degrees, double aspect,
                      double margin, const std::vector<Vec3>& points);
 

@@ -7,10 +7,11 @@
 namespace cagewright {
 namespace {
 
-auto key(const Vec3& p) { return std::make_tuple(p.x(), p.y(), p.z()); }
+auto key(const Vec3& p) {
+  return std::make_tuple(p.x(), p.y(), p.z());
+}
 
-template <class T>
-void sort_unique(std::vector<T>& values) {
+template <class T> void sort_unique(std::vector<T>& values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }

@@ -54,9 +54,13 @@ Result<std::unique_ptr<Context>> Context::create() {
   }
   const EGLenum api_before = eglQueryAPI();
   eglBindAPI(EGL_OPENGL_API);
-  constexpr std::array<EGLint, 7> attributes = {
-      EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+  constexpr std::array<EGLint, 7> attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                                3,
+                                                EGL_CONTEXT_MINOR_VERSION,
+                                                3,
+                                                EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                                EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                                EGL_NONE};
   const EGLContext context =
       eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
   eglBindAPI(api_before);
@@ -66,12 +70,13 @@ Result<std::unique_ptr<Context>> Context::create() {
   return std::unique_ptr<Context>(new Context(display, context));
 }
 
-Context::~Context() { eglDestroyContext(display_, context_); }
+Context::~Context() {
+  eglDestroyContext(display_, context_);
+}
 
 Context::Use::Use(const Context& context)
-    : display_(context.display_),
-      before_{eglGetCurrentDisplay(), eglGetCurrentSurface(EGL_DRAW), eglGetCurrentSurface(EGL_READ),
-              eglGetCurrentContext()} {
+    : display_(context.display_), before_{eglGetCurrentDisplay(), eglGetCurrentSurface(EGL_DRAW),
+                                          eglGetCurrentSurface(EGL_READ), eglGetCurrentContext()} {
   eglBindAPI(EGL_OPENGL_API);
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.context_);
 }

@@ -9,8 +9,8 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cagewright::gl {
@@ -46,8 +46,7 @@ private:
 };
 
 /// An object of OpenGL, deleted with its owner; the context must be current then.
-template <void (*Delete)(GLuint)>
-class Object {
+template <void (*Delete)(GLuint)> class Object {
 public:
   explicit Object(GLuint id = 0) : id_(id) {}
   Object(Object&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
@@ -66,11 +65,21 @@ private:
   GLuint id_;
 };
 
-inline void delete_program(GLuint id) { glDeleteProgram(id); }
-inline void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
-inline void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
-inline void delete_vertex_array(GLuint id) { glDeleteVertexArrays(1, &id); }
-inline void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
+inline void delete_program(GLuint id) {
+  glDeleteProgram(id);
+}
+inline void delete_texture(GLuint id) {
+  glDeleteTextures(1, &id);
+}
+inline void delete_buffer(GLuint id) {
+  glDeleteBuffers(1, &id);
+}
+inline void delete_vertex_array(GLuint id) {
+  glDeleteVertexArrays(1, &id);
+}
+inline void delete_framebuffer(GLuint id) {
+  glDeleteFramebuffers(1, &id);
+}
 
 using Program = Object<delete_program>;
 using Texture = Object<delete_texture>;
@@ -84,7 +93,8 @@ Result<Program> make_program(const std::string& vertex, const std::string& fragm
 /// A texture of the size, without mipmaps; `linear` interpolates between its pixels.
 Texture make_texture(GLenum format, int width, int height, bool linear = false);
 
-/// A framebuffer that draws to the colour textures (in this order) and to the depth texture, if any.
+/// A framebuffer that draws to the colour textures (in this order) and to the depth texture, if
+/// any.
 Framebuffer make_framebuffer(const std::vector<GLuint>& colors, GLuint depth = 0);
 
 /// One input of a vertex shader: `size` values of `type` at `offset` bytes into each element.

@@ -33,7 +33,8 @@ Result<std::string> encode_png(const Image& image) {
 
   const bool opaque = is_opaque(image);
   header.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
-  const std::vector<std::uint8_t> rgb = opaque ? without_opacity(image) : std::vector<std::uint8_t>();
+  const std::vector<std::uint8_t> rgb =
+      opaque ? without_opacity(image) : std::vector<std::uint8_t>();
   const void* pixels = opaque ? static_cast<const void*>(rgb.data()) : image.pixels.data();
 
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);

@@ -147,7 +147,8 @@ void add_cage(const Layer& layer, const TriangleMesh& mesh, const Triangulation&
   if (options.cage_faces) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       for (const Index v : mesh.triangles[t]) {
-        shapes.faces.push_back({mesh.positions[v].cast<float>(), to_color(face_color(cut.face_of[t]))});
+        shapes.faces.push_back(
+            {mesh.positions[v].cast<float>(), to_color(face_color(cut.face_of[t]))});
       }
     }
   }
@@ -162,12 +163,14 @@ void add_cage(const Layer& layer, const TriangleMesh& mesh, const Triangulation&
   }
 }
 
-Shapes shapes_of(const Scene& scene, const Normalization& normalized, const RenderOptions& options) {
+Shapes shapes_of(const Scene& scene, const Normalization& normalized,
+                 const RenderOptions& options) {
   Shapes shapes;
   for (const Layer& layer : scene.layers) {
     const Triangulation cut = triangulate(*layer.mesh);
     TriangleMesh mesh{layer.mesh->positions, cut.triangles};
-    std::transform(mesh.positions.begin(), mesh.positions.end(), mesh.positions.begin(), normalized);
+    std::transform(mesh.positions.begin(), mesh.positions.end(), mesh.positions.begin(),
+                   normalized);
     for (const Index v : used_points(*layer.mesh)) {
       shapes.points.push_back(mesh.positions[v]);
     }
@@ -181,7 +184,8 @@ Shapes shapes_of(const Scene& scene, const Normalization& normalized, const Rend
 }
 
 /// Translucent faces must be drawn from the farthest to the nearest.
-std::vector<FaceVertex> sorted_by_depth(const std::vector<FaceVertex>& faces, const Camera& camera) {
+std::vector<FaceVertex> sorted_by_depth(const std::vector<FaceVertex>& faces,
+                                        const Camera& camera) {
   const Vec3f backward = camera.axes.row(2).transpose().cast<float>();
   std::vector<std::pair<float, std::size_t>> order(faces.size() / 3);
   for (std::size_t t = 0; t < order.size(); ++t) {
@@ -287,10 +291,9 @@ Status check_options(const Scene& scene, std::size_t views, const RenderOptions&
     }
     if (!layer.vertex_colors.empty() &&
         layer.vertex_colors.size() != layer.mesh->positions.size()) {
-      return Error{ErrorCode::mismatch, "there are " + std::to_string(layer.vertex_colors.size()) +
-                                            " colors for " +
-                                            std::to_string(layer.mesh->positions.size()) +
-                                            " vertices"};
+      return Error{ErrorCode::mismatch,
+                   "there are " + std::to_string(layer.vertex_colors.size()) + " colors for " +
+                       std::to_string(layer.mesh->positions.size()) + " vertices"};
     }
   }
   return success();
@@ -332,8 +335,8 @@ namespace {
 class Drawing {
 public:
   Drawing(const Shapes& shapes, const Camera& camera, const RenderOptions& options)
-      : shapes_(shapes), camera_(camera), options_(options), width_(options.width * options.samples),
-        height_(options.height * options.samples),
+      : shapes_(shapes), camera_(camera), options_(options),
+        width_(options.width * options.samples), height_(options.height * options.samples),
         aspect_(static_cast<double>(options.width) / options.height),
         albedo_(gl::make_texture(GL_RGBA8, width_, height_)),
         surface_(gl::make_texture(GL_RGBA16F, width_, height_)),
@@ -471,8 +474,7 @@ private:
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
 
-  template <class Draw>
-  static void blend(const Draw& draw) {
+  template <class Draw> static void blend(const Draw& draw) {
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     draw();
@@ -521,8 +523,8 @@ std::vector<Camera> cameras_at_one_scale(std::span<const View> views, const Shap
   double distance = 0;
   const double aspect = static_cast<double>(options.width) / options.height;
   for (const View& view : views) {
-    cameras.push_back(fitted_camera(view, options.up, options.angle_degrees, aspect,
-                                    options.margin, shapes.points));
+    cameras.push_back(fitted_camera(view, options.up, options.angle_degrees, aspect, options.margin,
+                                    shapes.points));
     distance = std::max(distance, cameras.back().eye.z());
   }
   for (Camera& camera : cameras) {

@@ -46,16 +46,16 @@ struct RenderOptions {
   View view;
   UpAxis up = UpAxis::y;
   Background background = Background::gradient;
-  double angle_degrees = 24;        ///< height of the angle of view; in [1, 120]
-  double margin = 0.04;             ///< free at each side, fraction of the picture; in [0, 0.4]
-  double crease_degrees = 45;       ///< edges that bend more stay sharp
-  bool ambient_occlusion = true;    ///< darkens folds and corners
-  bool model_edges = false;         ///< the sides of the polygons of solids, as fine lines
-  bool cage_faces = true;           ///< else only lines and dots
-  double cage_opacity = 0.16;       ///< of faces seen head-on; in [0, 1]
-  double edge_width = 2.2;          ///< of the cage's lines, pixels
-  double vertex_radius = 3.4;       ///< of the cage's dots, pixels; 0: no dots
-  int samples = 3;                  ///< each pixel is the mean of samples * samples; in [1, 4]
+  double angle_degrees = 24;     ///< height of the angle of view; in [1, 120]
+  double margin = 0.04;          ///< free at each side, fraction of the picture; in [0, 0.4]
+  double crease_degrees = 45;    ///< edges that bend more stay sharp
+  bool ambient_occlusion = true; ///< darkens folds and corners
+  bool model_edges = false;      ///< the sides of the polygons of solids, as fine lines
+  bool cage_faces = true;        ///< else only lines and dots
+  double cage_opacity = 0.16;    ///< of faces seen head-on; in [0, 1]
+  double edge_width = 2.2;       ///< of the cage's lines, pixels
+  double vertex_radius = 3.4;    ///< of the cage's dots, pixels; 0: no dots
+  int samples = 3;               ///< each pixel is the mean of samples * samples; in [1, 4]
 };
 
 /// Keeps what drawing needs (an OpenGL context and programs) for many pictures. A renderer may be

@@ -1,8 +1,8 @@
 /// \file
 /// The renderer's programs for the graphics card, in GLSL. Private to the module.
 ///
-/// All distances are in units of the scene's radius. "View space" has x to the right, y up, z towards
-/// the viewer, the eye at the origin. Colours are in linear light; a colour with opacity is
+/// All distances are in units of the scene's radius. "View space" has x to the right, y up, z
+/// towards the viewer, the eye at the origin. Colours are in linear light; a colour with opacity is
 /// multiplied by it.
 #pragma once
 

@@ -32,7 +32,9 @@ struct Side {
   }
 };
 
-Index next_corner(Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+Index next_corner(Index corner) {
+  return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
 
 std::vector<Side> sorted_sides(TriangleView mesh) {
   const std::vector<Index> merged = merged_points(mesh.positions);
