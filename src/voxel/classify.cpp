@@ -319,6 +319,9 @@ Status classify(TriangleView mesh, VoxelGrid& grid, const Progress& progress) {
   }
   progress(0.8, "classifying voxels");
   Regions(grid, votes, patches.all_closed()).decide();
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
   progress(1, "classifying voxels");
   return success();
 }
