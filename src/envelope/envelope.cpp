@@ -1,0 +1,173 @@
+#include "envelope/envelope.h"
+
+#include "envelope/well_composed.h"
+#include "mesh/measures.h"
+#include "mesh/triangulate.h"
+#include "voxel/bridge.h"
+#include "voxel/voxel_mesh.h"
+#include "voxel/voxelize.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cagewright {
+
+namespace {
+
+// The margin is a little more than the clearance: the surface of the voxels is then strictly clear.
+constexpr double margin_factor = 1.05;
+
+Result<VoxelGrid> voxels(TriangleView model, const EnvelopeOptions& options, int resolution,
+                         const Progress& progress) {
+  const Box3 box = bounding_box(model);
+  const double diagonal = box.diagonal().norm();
+  OrientedBox frame;
+  frame.center = box.center();
+  frame.axes = Mat3::Identity();
+  frame.half = box.sizes() / 2;
+  const double across = frame.half.maxCoeff() * 2 / diagonal * resolution;
+  VoxelizeOptions voxel;
+  voxel.resolution = std::max(2, static_cast<int>(std::lround(across)) + 1);
+  const double size = 2 * frame.half.maxCoeff() / (voxel.resolution - 1);
+  voxel.margin = margin_factor * options.clearance * diagonal / size;
+  return voxelize(model, frame, voxel, progress);
+}
+
+// Everything not occupied that is further than `reach` voxels from all that is not within `reach`
+// of an occupied voxel. By layers of face, edge and corner neighbours in turn the distance is close
+// to Euclidean.
+void grow(std::vector<std::uint8_t>& set, const std::array<int, 3>& dims, double reach) {
+  const std::size_t nx = static_cast<std::size_t>(dims[0]);
+  const std::size_t ny = static_cast<std::size_t>(dims[1]);
+  const std::size_t nz = static_cast<std::size_t>(dims[2]);
+  // Separable squared distance, cut off at the reach: along x, then y, then z.
+  const int r = static_cast<int>(std::floor(reach));
+  const double far = reach * reach + 1;
+  std::vector<double> squared(set.size(), far);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    squared[i] = set[i] != 0 ? 0 : far;
+  }
+  const std::array<std::size_t, 3> counts = {nx, ny, nz};
+  const std::array<std::size_t, 3> strides = {1, nx, nx * ny};
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> next(set.size(), far);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      const auto at = static_cast<int>(i / strides[k] % counts[k]);
+      const int low = std::max(0, at - r);
+      const int high = std::min(static_cast<int>(counts[k]) - 1, at + r);
+      for (int j = low; j <= high; ++j) {
+        const double d = squared[i + strides[k] * static_cast<std::size_t>(j) -
+                                 strides[k] * static_cast<std::size_t>(at)] +
+                         (j - at) * (j - at);
+        next[i] = std::min(next[i], d);
+      }
+    }
+    squared = std::move(next);
+  }
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    set[i] = squared[i] <= reach * reach ? 1 : 0;
+  }
+}
+
+// A grid with `layers` more outer voxels on every side.
+VoxelGrid padded(const VoxelGrid& grid, int layers) {
+  VoxelGrid wide = grid;
+  for (int& d : wide.dims) {
+    d += 2 * layers;
+  }
+  wide.origin = grid.corner(-layers, -layers, -layers);
+  wide.kinds.assign(wide.index(0, 0, wide.dims[2]), VoxelKind::outer);
+  for (std::size_t i = 0; i < grid.kinds.size(); ++i) {
+    const auto [x, y, z] = grid.cell(i);
+    wide.kinds[wide.index(x + layers, y + layers, z + layers)] = grid.kinds[i];
+  }
+  return wide;
+}
+
+// Morphological closing: what a ball of that radius (in voxels) cannot enter from outside.
+void close_gaps(VoxelGrid& grid, double radius) {
+  grid = padded(grid, static_cast<int>(std::ceil(radius)) + 1);
+  std::vector<std::uint8_t> set(grid.kinds.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    set[i] = grid.occupied(i) ? 1 : 0;
+  }
+  grow(set, grid.dims, radius);
+  for (std::uint8_t& s : set) {
+    s = s == 0 ? 1 : 0;
+  }
+  grow(set, grid.dims, radius);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    if (set[i] == 0 && !grid.occupied(i)) {
+      grid.kinds[i] = VoxelKind::inner;
+    }
+  }
+}
+
+Result<Envelope> at_resolution(TriangleView model, const EnvelopeOptions& options, int resolution,
+                               const Progress& progress) {
+  Result<VoxelGrid> grid = voxels(model, options, resolution, progress);
+  if (!grid) {
+    return grid.error();
+  }
+  if (options.closing > 0) {
+    close_gaps(*grid, options.closing * diagonal(model.positions) / grid->size);
+  }
+  Envelope result;
+  result.resolution = resolution;
+  result.bridges = join_pieces(*grid);
+  do {
+    make_well_composed(*grid);
+  } while (fill_cavities(*grid) > 0);
+  for (VoxelKind& kind : grid->kinds) {
+    kind = kind == VoxelKind::outer ? kind : VoxelKind::feature;
+  }
+  result.mesh = to_triangle_mesh(voxel_boxes(*grid, {VoxelKind::feature}));
+  const auto euler = static_cast<long>(result.mesh.positions.size()) -
+                     static_cast<long>(result.mesh.triangles.size() / 2);
+  result.genus = static_cast<int>(1 - euler / 2);
+  return result;
+}
+
+} // namespace
+
+Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
+                          const Progress& progress) {
+  if (!(options.clearance > 0 && options.clearance < 1)) {
+    return Error{ErrorCode::invalid_option, "the clearance must be above 0 and below 1"};
+  }
+  if (options.resolution != 0) {
+    if (options.resolution < 2 || options.resolution > 4096) {
+      return Error{ErrorCode::invalid_option, "the resolution is " +
+                                                  std::to_string(options.resolution) +
+                                                  "; it must be from 2 to 4096"};
+    }
+    return at_resolution(model, options, options.resolution, progress);
+  }
+  // A handle costs vertices and is rarely the model's own when a finer grid does not show it. Of
+  // the first few resolutions with the least genus the coarsest is taken.
+  const double least = std::clamp(3.2 * std::sqrt(options.vertices), 24.0, 64.0);
+  std::optional<Envelope> best;
+  constexpr std::array<double, 5> factors = {1, 1.2, 1.45, 1.75, 2.1};
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    Result<Envelope> next = at_resolution(
+        model, options, static_cast<int>(std::lround(least * factors[i])),
+        progress.part(0.2 * static_cast<double>(i), 0.2 * static_cast<double>(i + 1)));
+    if (!next) {
+      return next;
+    }
+    if (!best || next->genus < best->genus) {
+      best = std::move(*next);
+    }
+    if (best->genus == 0) {
+      break;
+    }
+  }
+  return *std::move(best);
+}
+
+} // namespace cagewright

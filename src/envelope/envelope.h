@@ -1,0 +1,39 @@
+/// \file
+/// A surface of voxels round a model: where the improvement starts when there are no boxes.
+#pragma once
+
+#include "core/progress.h"
+#include "core/result.h"
+#include "mesh/triangle_mesh.h"
+
+namespace cagewright {
+
+struct EnvelopeOptions {
+  /// Voxels along the model's diagonal. 0: chosen so that the envelope has no handles that come
+  /// and go with the resolution, and is no finer than `vertices` warrants.
+  int resolution = 0;
+  int vertices = 100; ///< of the cage that is to be made of it: guides the choice of resolution
+  double clearance = 0.002; ///< least distance to the model, in diagonals of its bounding box
+  /// Holes and gaps narrower than twice this, in diagonals, are filled.
+  double closing = 0;
+};
+
+/// A closed surface round a model, and what is known about it.
+struct Envelope {
+  TriangleMesh mesh;
+  int resolution = 0; ///< voxels along the model's diagonal
+  int genus = 0;      ///< handles of the surface
+  int bridges = 0;    ///< rods of voxels added to join the model's pieces
+};
+
+/// The outer boundary of the voxels that come within the clearance of the model or lie inside it:
+/// one closed, manifold surface, oriented outward, that keeps the clearance everywhere and encloses
+/// every vertex and every triangle of the model. Pieces of the model that lie apart are joined by
+/// rods of voxels; cavities are filled.
+///
+/// Errors: unfit_model, invalid_option, too_large, cancelled.
+/// Cost: that of voxelize(), a few times if the resolution is to be chosen.
+Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options = {},
+                          const Progress& progress = {});
+
+} // namespace cagewright

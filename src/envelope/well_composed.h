@@ -1,0 +1,18 @@
+/// \file
+/// Voxels whose surface is manifold.
+#pragma once
+
+#include "voxel/voxel_grid.h"
+
+namespace cagewright {
+
+/// Fills cavities: outer voxels that no way through faces leads to from the grid's boundary become
+/// inner. \returns how many
+std::size_t fill_cavities(VoxelGrid& grid);
+
+/// Marks further voxels as inner until the surface of the occupied ones is manifold: in every block
+/// of 2 x 2 x 2 voxels the occupied ones hang together by faces, and so do the others (Latecki,
+/// "3D Well-Composed Pictures", 1997). \returns how many
+std::size_t make_well_composed(VoxelGrid& grid);
+
+} // namespace cagewright

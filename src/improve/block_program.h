@@ -1,0 +1,44 @@
+/// \file
+/// Quadratic programs over the positions of a mesh's vertices.
+#pragma once
+
+#include "core/geometry.h"
+#include "mesh/triangle_mesh.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace cagewright {
+
+/// One inequality over up to three vertices: sum of weight[i] * direction . x[vertex[i]] >= bound.
+struct BlockConstraint {
+  Triangle vertex{};
+  std::array<double, 3> weight{};
+  Vec3 direction = Vec3::Zero();
+  double bound = 0;
+};
+
+/// A quadratic function of N points: 1/2 x.H x + g.x. H is made of 3 x 3 blocks, of which those
+/// that join the corners of one face may be other than zero; it must be positive definite.
+struct BlockQuadratic {
+  explicit BlockQuadratic(std::size_t count) : gradient(count, Vec3::Zero()) {}
+
+  struct Term { ///< adds to the block (row, column), and its transpose to (column, row)
+    Index row, column;
+    Mat3 block;
+  };
+  std::vector<Vec3> gradient; ///< N
+  std::vector<Term> terms;    ///< row = column: added once
+};
+
+/// The points that minimise the quadratic under the constraints, by a primal-dual interior point
+/// method (Mehrotra's predictor and corrector; Nocedal and Wright, "Numerical Optimization", 16.6).
+/// Each constraint may be missed by `slack` times its multiplier, so that there always is a
+/// solution. The start is x = 0.
+///
+/// Cost: some 15 sparse factorisations of a 3N x 3N matrix.
+std::vector<Vec3> minimize(const BlockQuadratic& quadratic,
+                           std::span<const BlockConstraint> constraints, double slack);
+
+} // namespace cagewright

@@ -1,0 +1,251 @@
+#include "improve/guard.h"
+
+#include "exact/predicates.h"
+#include "mesh/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace cagewright {
+
+namespace {
+
+Box3 box_of(const Corners& t) {
+  Box3 box(t[0]);
+  box.extend(t[1]);
+  box.extend(t[2]);
+  return box;
+}
+
+// One step outward after rounding: the float box contains the double one.
+float down(double x) {
+  return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
+}
+float up(double x) {
+  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+}
+
+// Vertices at the same place are one: files often store a corner once for each of its faces.
+std::vector<Index> weld(std::span<const Vec3> positions) {
+  std::vector<Index> order(positions.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto before = [&](Index a, Index b) {
+    const Vec3& p = positions[a];
+    const Vec3& q = positions[b];
+    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+  };
+  std::sort(order.begin(), order.end(), before);
+  std::vector<Index> representative(positions.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && positions[order[i - 1]] == positions[order[i]];
+    representative[order[i]] = same ? representative[order[i - 1]] : order[i];
+  }
+  return representative;
+}
+
+std::vector<ModelSurface::Part> connected_parts(TriangleView model) {
+  std::vector<Index> parent = weld(model.positions);
+  const auto root = [&](Index v) {
+    while (parent[v] != v) {
+      parent[v] = parent[parent[v]];
+      v = parent[v];
+    }
+    return v;
+  };
+  for (const Triangle& t : model.triangles) {
+    for (int i = 1; i < 3; ++i) {
+      const Index a = root(t[0]);
+      const Index b = root(t[i]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  std::vector<ModelSurface::Part> parts;
+  std::vector<Index> part_of(model.positions.size(), no_index);
+  for (const Triangle& t : model.triangles) {
+    Index& part = part_of[root(t[0])];
+    if (part == no_index) {
+      part = static_cast<Index>(parts.size());
+      parts.push_back({Box3(), model.positions[t[0]]});
+    }
+    for (const Index v : t) {
+      parts[part].box.extend(model.positions[v]);
+    }
+  }
+  return parts;
+}
+
+} // namespace
+
+FaceBoxes::FaceBoxes(const CageMesh& cage) {
+  Box3 box;
+  for (Index v = 0; v < cage.vertex_end(); ++v) {
+    box.extend(cage.position(v));
+  }
+  origin_ = box.center();
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    update(cage, f);
+  }
+}
+
+void FaceBoxes::update(const CageMesh& cage, Index face) {
+  constexpr float never = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    if (face >= low_[k].size()) {
+      low_[k].resize(face + 1, never);
+      high_[k].resize(face + 1, -never);
+    }
+    low_[k][face] = never;
+    high_[k][face] = -never;
+    if (cage.has_face(face)) {
+      for (const Index v : cage.face(face)) {
+        const double x = cage.position(v)[k] - origin_[k];
+        low_[k][face] = std::min(low_[k][face], down(x));
+        high_[k][face] = std::max(high_[k][face], up(x));
+      }
+    }
+  }
+}
+
+void FaceBoxes::find(const Box3& box, std::vector<Index>& found) const {
+  float low[3];
+  float high[3];
+  for (int k = 0; k < 3; ++k) {
+    low[k] = down(box.min()[k] - origin_[k]);
+    high[k] = up(box.max()[k] - origin_[k]);
+  }
+  constexpr std::size_t block = 64; // tested without branches, so that the compiler vectorises
+  std::array<unsigned char, block> hit{};
+  const std::size_t count = low_[0].size();
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t size = std::min(block, count - begin);
+    unsigned char any = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::size_t f = begin + i;
+      hit[i] = static_cast<unsigned char>((low_[0][f] <= high[0]) & (high_[0][f] >= low[0]) &
+                                          (low_[1][f] <= high[1]) & (high_[1][f] >= low[1]) &
+                                          (low_[2][f] <= high[2]) & (high_[2][f] >= low[2]));
+      any |= hit[i];
+    }
+    for (std::size_t i = 0; any != 0 && i < size; ++i) {
+      if (hit[i] != 0) {
+        found.push_back(static_cast<Index>(begin + i));
+      }
+    }
+  }
+}
+
+ModelSurface::ModelSurface(TriangleView model)
+    : tree(model), diagonal(bounding_box(model).diagonal().norm()), parts(connected_parts(model)) {}
+
+std::optional<NearestPair> Guard::too_near(const CageMesh& cage, const Patch& patch) const {
+  for (const Triangle& t : patch.added) {
+    if (const auto pair = model_->tree.too_near(corners_after(cage, patch, t), clearance_)) {
+      return pair;
+    }
+  }
+  return std::nullopt;
+}
+
+bool Guard::crosses(const CageMesh& cage, const FaceBoxes& boxes, const Patch& patch) const {
+  std::vector<Corners> corners;
+  std::vector<Box3> bounds;
+  Box3 all;
+  for (const Triangle& t : patch.added) {
+    corners.push_back(corners_after(cage, patch, t));
+    if (is_degenerate(corners.back()[0], corners.back()[1], corners.back()[2])) {
+      return true;
+    }
+    bounds.push_back(box_of(corners.back()));
+    all.extend(bounds.back());
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (faces_cross(patch.added[i], corners[i], patch.added[j], corners[j])) {
+        return true;
+      }
+    }
+  }
+  std::vector<Index> near;
+  boxes.find(all, near);
+  for (const Index f : near) {
+    if (std::find(patch.removed.begin(), patch.removed.end(), f) != patch.removed.end()) {
+      continue;
+    }
+    const Triangle& t = cage.face(f);
+    const Corners at{cage.position(t[0]), cage.position(t[1]), cage.position(t[2])};
+    const Box3 box = box_of(at);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (bounds[i].intersects(box) && faces_cross(patch.added[i], corners[i], t, at)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool Guard::loses_a_part(const CageMesh& cage, const Patch& patch) const {
+  Box3 box;
+  for (const Index f : patch.removed) {
+    for (const Index v : cage.face(f)) {
+      box.extend(cage.position(v));
+    }
+  }
+  if (patch.vertex != no_index) {
+    box.extend(patch.position);
+  }
+  for (const ModelSurface::Part& part : model_->parts) {
+    if (!box.contains(part.box)) {
+      continue;
+    }
+    double angle = 0; // of the closed surface: old faces, and the new ones inside out
+    for (const Index f : patch.removed) {
+      const Triangle& t = cage.face(f);
+      angle +=
+          solid_angle(part.point, {cage.position(t[0]), cage.position(t[1]), cage.position(t[2])});
+    }
+    for (const Triangle& t : patch.added) {
+      angle -= solid_angle(part.point, corners_after(cage, patch, t));
+    }
+    if (std::abs(angle) > 2 * std::numbers::pi) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Corners corners_after(const CageMesh& cage, const Patch& patch, const Triangle& t) {
+  const auto at = [&](Index v) { return v == patch.vertex ? patch.position : cage.position(v); };
+  return {at(t[0]), at(t[1]), at(t[2])};
+}
+
+bool faces_cross(const Triangle& s, const Corners& at_s, const Triangle& t, const Corners& at_t) {
+  std::array<Vec3, 6> positions;
+  std::copy(at_s.begin(), at_s.end(), positions.begin());
+  std::copy(at_t.begin(), at_t.end(), positions.begin() + 3);
+  Triangle second{3, 4, 5};
+  for (int i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 3; ++j) {
+      if (t[i] == s[j]) {
+        second[i] = j;
+      }
+    }
+  }
+  return faces_cross(positions, Triangle{0, 1, 2}, second);
+}
+
+double solid_angle(const Vec3& p, const Corners& t) {
+  // Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.
+  const Vec3 a = t[0] - p;
+  const Vec3 b = t[1] - p;
+  const Vec3 c = t[2] - p;
+  const double la = a.norm();
+  const double lb = b.norm();
+  const double lc = c.norm();
+  return 2 * std::atan2(a.dot(b.cross(c)),
+                        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+}
+
+} // namespace cagewright

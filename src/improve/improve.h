@@ -1,0 +1,51 @@
+/// \file
+/// From any valid cage to a good one with few vertices.
+#pragma once
+
+#include "core/progress.h"
+#include "core/result.h"
+#include "mesh/triangle_mesh.h"
+
+#include <string>
+
+namespace cagewright {
+
+struct ImproveOptions {
+  int vertices = 100; ///< at most so many; 0: no limit
+  int faces = 0;      ///< at most so many triangles; 0: no limit
+  /// Least distance from every face of the cage to the model, in diagonals of the model's box. The
+  /// start must keep it.
+  double clearance = 0.002;
+  int most_valence = 10;
+  /// How often the cage is refined and simplified again to move vertices to where they pay.
+  int rounds = 4;
+  /// Weight of large gaps and of good shapes: see ObjectiveWeights.
+  double square = 20;
+  double shape = 3e-4;
+};
+
+struct ImproveReport {
+  bool reached = false; ///< the budget was met
+  std::string why_not;  ///< a sentence, if it was not
+  double objective = 0; ///< of the result, as in objective.h, in diagonals cubed
+  double simplify_seconds = 0;
+  double refine_seconds = 0;
+};
+
+struct Improved {
+  TriangleMesh cage;
+  ImproveReport report;
+};
+
+/// Simplifies and tightens a cage round a model.
+///
+/// The start is closed, manifold, oriented outward, free of self-intersections, encloses the model
+/// and keeps the clearance: so does the result, because no change is made that was not checked. If
+/// the budget cannot be met the smallest cage found is returned, and the report says why.
+///
+/// Errors: invalid_option, invalid_cage (the start has no faces), cancelled. The same result on any
+/// number of threads.
+Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOptions& options = {},
+                         const Progress& progress = {});
+
+} // namespace cagewright

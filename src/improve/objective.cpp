@@ -1,0 +1,105 @@
+#include "improve/objective.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace cagewright {
+
+namespace {
+
+// Dunavant's rule of degree 4 on the triangle ("High degree efficient symmetrical Gaussian
+// quadrature rules for the triangle", 1985).
+struct Node {
+  double weight;
+  double at[3];
+};
+constexpr double w1 = 0.223381589678011;
+constexpr double w2 = 0.109951743655322;
+constexpr double a1 = 0.445948490915965;
+constexpr double a2 = 0.091576213509771;
+constexpr std::array<Node, 6> rule = {{{w1, {a1, a1, 1 - 2 * a1}},
+                                       {w1, {a1, 1 - 2 * a1, a1}},
+                                       {w1, {1 - 2 * a1, a1, a1}},
+                                       {w2, {a2, a2, 1 - 2 * a2}},
+                                       {w2, {a2, 1 - 2 * a2, a2}},
+                                       {w2, {1 - 2 * a2, a2, a2}}}};
+
+double six_volumes(const Corners& t, const Vec3& origin) {
+  return (t[0] - origin).dot((t[1] - origin).cross(t[2] - origin));
+}
+
+} // namespace
+
+double triangle_area(const Corners& t) {
+  return (t[1] - t[0]).cross(t[2] - t[0]).norm() / 2;
+}
+
+double shape_defect(const Corners& t) {
+  const double sides =
+      (t[1] - t[0]).squaredNorm() + (t[2] - t[1]).squaredNorm() + (t[0] - t[2]).squaredNorm();
+  const double area = triangle_area(t);
+  constexpr double most = 100;
+  const double scaled = 4 * std::numbers::sqrt3 * area;
+  return scaled * (most + 1) > sides ? sides / scaled - 1 : most;
+}
+
+double bend(const Corners& s, const Corners& t) {
+  const Vec3 m = (s[1] - s[0]).cross(s[2] - s[0]);
+  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double length = m.norm() * n.norm();
+  return length > 0 ? m.dot(n) / length : -1;
+}
+
+Corners corners_of(const CageMesh& cage, Index face) {
+  const Triangle& t = cage.face(face);
+  return {cage.position(t[0]), cage.position(t[1]), cage.position(t[2])};
+}
+
+double Objective::face(const Corners& t) const {
+  double sum = 0;
+  for (const Node& node : rule) {
+    const Vec3 p = node.at[0] * t[0] + node.at[1] * t[1] + node.at[2] * t[2];
+    sum += node.weight * gap(model_->tree.nearest(p).distance);
+  }
+  const double x = shape_defect(t);
+  return triangle_area(t) * sum + shape_weight() * x * x;
+}
+
+double Objective::volume_change(const CageMesh& cage, const Patch& patch) {
+  const Vec3 origin = cage.position(cage.face(patch.removed[0])[0]);
+  double sum = 0;
+  for (const Index f : patch.removed) {
+    sum -= six_volumes(corners_of(cage, f), origin);
+  }
+  for (const Triangle& t : patch.added) {
+    sum += six_volumes(corners_after(cage, patch, t), origin);
+  }
+  return sum / 6;
+}
+
+double Objective::change(const CageMesh& cage, const Patch& patch) const {
+  double sum = volume_change(cage, patch);
+  for (const Index f : patch.removed) {
+    sum -= face(corners_of(cage, f));
+  }
+  for (const Triangle& t : patch.added) {
+    sum += face(corners_after(cage, patch, t));
+  }
+  return sum;
+}
+
+double Objective::total(const CageMesh& cage) const {
+  const Vec3 origin = cage.position(0);
+  double sum = 0;
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    if (cage.has_face(f)) {
+      const Corners t = corners_of(cage, f);
+      sum += six_volumes(t, origin) / 6 + face(t);
+    }
+  }
+  return sum;
+}
+
+} // namespace cagewright

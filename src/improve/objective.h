@@ -1,0 +1,66 @@
+/// \file
+/// What makes one cage better than another, in one number.
+#pragma once
+
+#include "improve/guard.h"
+
+namespace cagewright {
+
+/// How the parts of the objective are weighted. The objective of a cage is its volume, plus the
+/// integral over its faces of d + square * d^2 / D (d the distance to the model, D the model's
+/// diagonal), plus shape * D * area * x^2 for each face, x = (a^2 + b^2 + c^2) / (4 sqrt(3) A) - 1
+/// for a face of sides a, b, c and area A: zero when equilateral, large for needles.
+struct ObjectiveWeights {
+  double square = 20;      ///< large gaps count more than small ones: no spikes
+  double shape = 3e-4;     ///< a distance in diagonals that a better shape is worth
+  double typical_area = 0; ///< `area` above, in the model's units: that of a typical face
+};
+
+class Objective {
+public:
+  Objective(const ModelSurface& model, const ObjectiveWeights& weights)
+      : model_(&model), weights_(weights) {}
+
+  [[nodiscard]] const ModelSurface& model() const { return *model_; }
+  [[nodiscard]] double diagonal() const { return model_->diagonal; }
+
+  /// d + square d^2 / D
+  [[nodiscard]] double gap(double d) const { return d + weights_.square * d * d / diagonal(); }
+  /// Its derivative, and its second.
+  [[nodiscard]] double gap_slope(double d) const { return 1 + gap_curvature() * d; }
+  [[nodiscard]] double gap_curvature() const { return 2 * weights_.square / diagonal(); }
+
+  /// What multiplies x^2.
+  [[nodiscard]] double shape_weight() const {
+    return weights_.shape * diagonal() * weights_.typical_area;
+  }
+
+  /// A face's own part: the integral of the gap, by six nearest points, and the shape.
+  [[nodiscard]] double face(const Corners& t) const;
+
+  /// The change of the whole objective by a patch.
+  [[nodiscard]] double change(const CageMesh& cage, const Patch& patch) const;
+
+  /// The change of the cage's volume by a patch.
+  static double volume_change(const CageMesh& cage, const Patch& patch);
+
+  /// The objective of the cage.
+  [[nodiscard]] double total(const CageMesh& cage) const;
+
+private:
+  const ModelSurface* model_;
+  ObjectiveWeights weights_;
+};
+
+/// x of ObjectiveWeights: 0 for an equilateral triangle, at most 100.
+double shape_defect(const Corners& t);
+
+double triangle_area(const Corners& t);
+
+/// The cosine of the angle between the normals of two faces: -1 when one is folded onto the other.
+double bend(const Corners& s, const Corners& t);
+
+/// The corners of a living face.
+Corners corners_of(const CageMesh& cage, Index face);
+
+} // namespace cagewright

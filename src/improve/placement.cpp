@@ -1,0 +1,276 @@
+#include "improve/placement.h"
+
+#include "improve/nearest_in_half_spaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace cagewright {
+
+namespace {
+
+// Constraints ask for a little more than the clearance, so that a step on curved constraints ends
+// on the right side.
+constexpr double margin = 1.02;
+constexpr int most_rounds = 12;
+// How often the objective is taken anew at a better place.
+constexpr int refreshes = 3;
+
+struct Quadratic {
+  Vec3 gradient = Vec3::Zero();
+  Mat3 hessian = Mat3::Zero();
+};
+
+Vec3 unit_normal(const Corners& t) {
+  return (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+}
+
+// The vertex w and the triangles (w, a, b) round it.
+class Fan {
+public:
+  Fan(const Guard& guard, const Objective& objective, const CageMesh& cage, Patch& patch)
+      : guard_(guard), objective_(objective), cage_(cage), patch_(patch) {
+    const Ring ring = ring_of(patch);
+    for (const auto& [a, b] : ring) {
+      from_.push_back(cage.position(a));
+      to_.push_back(cage.position(b));
+      const Index outer = cage.face_left_of(b, a);
+      outer_normal_.push_back(outer != no_index ? unit_normal(corners_of(cage, outer))
+                                                : Vec3(Vec3::Zero()));
+    }
+    for (const Index f : patch.removed) {
+      for (const Vec3& p : corners_of(cage, f)) {
+        old_.push_back(p);
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return from_.size(); }
+
+  [[nodiscard]] Corners corners(std::size_t i) const { return {patch_.position, from_[i], to_[i]}; }
+
+  // The objective to second order round the present position: the volume is linear in it, the gap
+  // is taken along the direction to the nearest point of the model.
+  [[nodiscard]] Quadratic objective() const {
+    Quadratic q;
+    const Vec3& w = patch_.position;
+    double patch_area = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Corners t = corners(i);
+      q.gradient += (t[1] - w).cross(t[2] - w) / 6;
+      add_gap(q, t);
+      add_shape(q, t);
+      patch_area += triangle_area(t);
+    }
+    // Far steps leave the model of the objective: they cost as much as their volume at D / 10.
+    q.hessian += (4 * patch_area / objective_.diagonal()) * Mat3::Identity();
+    return q;
+  }
+
+  // Half spaces for all faces above which there is some of the model. \returns how many
+  int add_blocked(std::vector<HalfSpace>& spaces) const {
+    std::vector<Vec3> normals;
+    for (std::size_t i = 0; i < size(); ++i) {
+      normals.push_back(unit_normal(corners(i)));
+    }
+    int count = 0;
+    const double keep = margin * guard_.clearance();
+    for (std::size_t i = 0; i < size(); ++i) {
+      const auto top = highest_above(i, normals);
+      if (!top) {
+        continue;
+      }
+      // (w, a, b) must pass above the point, raised by the clearance.
+      const Vec3 raised = top->point + keep * normals[i] - from_[i];
+      const Vec3 normal = raised.cross(to_[i] - from_[i]);
+      const double length = normal.norm();
+      if (length > 1e-6 * (to_[i] - from_[i]).squaredNorm()) {
+        spaces.push_back({normal / length, normal.dot(from_[i]) / length});
+        ++count;
+      }
+    }
+    return count;
+  }
+
+  // A half space that drives the face apart from the pair. \returns false if w has no say in it
+  bool add_separation(std::vector<HalfSpace>& spaces, const NearestPair& pair) const {
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double d = (nearest_in_triangle(pair.first, corners(i)) - pair.first).squaredNorm();
+      if (d < least) {
+        least = d;
+        nearest = i;
+      }
+    }
+    const Corners t = corners(nearest);
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double share =
+        (t[2] - t[1]).cross(pair.first - t[1]).dot(n) / std::max(n.squaredNorm(), 1e-300);
+    const double distance = std::sqrt(pair.squared);
+    constexpr double least_share = 0.02;
+    if (share < least_share) {
+      return false;
+    }
+    const Vec3 away = distance > 0.01 * guard_.clearance()
+                          ? Vec3((pair.first - pair.second) / distance)
+                          : Vec3(n.normalized());
+    const double push = (margin * guard_.clearance() - distance) / share;
+    spaces.push_back({-away, -away.dot(patch_.position) - push});
+    return true;
+  }
+
+private:
+  void add_gap(Quadratic& q, const Corners& t) const {
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double area = n.norm() / 2;
+    if (area <= 0) {
+      return;
+    }
+    double mean = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double share = k == 0 ? 2.0 / 3 : 1.0 / 6;
+      const Vec3 p = (t[0] + t[1] + t[2]) / 6 + t[k] / 2;
+      const SurfaceTree::Nearest near = objective_.model().tree.nearest(p);
+      const double d = near.distance;
+      mean += objective_.gap(d) / 3;
+      if (d > 0) {
+        const Vec3 u = (p - near.point) / d;
+        q.gradient += area / 3 * share * objective_.gap_slope(d) * u;
+        q.hessian += area / 3 * share * share * objective_.gap_curvature() * u * u.transpose();
+      }
+    }
+    q.gradient += mean / 2 * (n / (2 * area)).cross(t[2] - t[1]); // the area changes too
+  }
+
+  void add_shape(Quadratic& q, const Corners& t) const {
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double area = n.norm() / 2;
+    const double x = shape_defect(t);
+    const double scaled = 4 * std::numbers::sqrt3 * area;
+    if (!(scaled > 0)) {
+      return;
+    }
+    const Vec3 area_slope = (n / (2 * area)).cross(t[2] - t[1]) / 2;
+    const Vec3 slope = 2 * (2 * t[0] - t[1] - t[2]) / scaled - (x + 1) / area * area_slope;
+    const double weight = objective_.shape_weight();
+    q.gradient += 2 * weight * x * slope;
+    q.hessian += 2 * weight * (x * 4 / scaled * Mat3::Identity() + slope * slope.transpose());
+  }
+
+  // What of the model is above face i and was below the old faces. Between two faces of the fan
+  // the space is divided by the plane that bisects their angle.
+  [[nodiscard]] std::optional<SurfaceTree::Highest>
+  highest_above(std::size_t i, const std::vector<Vec3>& normals) const {
+    const Corners t = corners(i);
+    const Vec3& n = normals[i];
+    const HalfSpace plane{n, n.dot(t[0])};
+    double most = 0;
+    for (const Vec3& p : old_) {
+      most = std::max(most, plane.above(p));
+    }
+    const std::array<Vec3, 3> beside = {normals[(i + size() - 1) % size()], outer_normal_[i],
+                                        normals[(i + 1) % size()]};
+    std::array<HalfSpace, 3> sides;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 edge = t[(k + 1) % 3] - t[k];
+      Vec3 across = n + beside[k];
+      if (across.squaredNorm() < 0.1) {
+        across = n;
+      }
+      Vec3 normal = edge.cross(across).normalized();
+      if (normal.dot(edge.cross(n)) < 0) {
+        normal = -normal;
+      }
+      sides[k] = {normal, normal.dot(t[k])};
+    }
+    return objective_.model().tree.highest(plane, sides, -guard_.clearance(), most);
+  }
+
+  const Guard& guard_;
+  const Objective& objective_;
+  const CageMesh& cage_;
+  Patch& patch_;
+  std::vector<Vec3> from_;
+  std::vector<Vec3> to_;
+  std::vector<Vec3> outer_normal_; // of the faces across a b
+  std::vector<Vec3> old_;          // corners of the removed faces
+};
+
+std::optional<Vec3> solve(const Quadratic& q, const Vec3& origin,
+                          const std::vector<HalfSpace>& spaces) {
+  std::vector<HalfSpace> moved = spaces;
+  for (HalfSpace& s : moved) {
+    s.offset -= s.normal.dot(origin);
+  }
+  const std::optional<Vec3> step = minimize_in_half_spaces(q.hessian, q.gradient, moved);
+  return step ? std::optional<Vec3>(origin + *step) : std::nullopt;
+}
+
+} // namespace
+
+std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& objective,
+                                         const CageMesh& cage, Patch patch) {
+  const Fan fan(guard, objective, cage, patch);
+  std::vector<HalfSpace> spaces;
+  std::optional<Vec3> best;
+  Quadratic quadratic = fan.objective();
+  Vec3 origin = patch.position;
+  int taken = 1;
+  for (int round = 0; round < most_rounds; ++round) {
+    if (fan.add_blocked(spaces) == 0) {
+      const std::optional<NearestPair> pair = guard.too_near(cage, patch);
+      if (!pair) {
+        const bool settled = best && (*best - patch.position).norm() < guard.clearance() / 4;
+        best = patch.position;
+        if (taken == refreshes || settled) {
+          return best;
+        }
+        quadratic = fan.objective();
+        origin = patch.position;
+        ++taken;
+      } else if (!fan.add_separation(spaces, *pair)) {
+        return best;
+      }
+    }
+    const std::optional<Vec3> next = solve(quadratic, origin, spaces);
+    if (!next) {
+      return best;
+    }
+    patch.position = *next;
+  }
+  return best;
+}
+
+std::optional<Vec3> place_outside_patch(const CageMesh& cage, const Patch& patch) {
+  const Vec3 origin = patch.position;
+  Quadratic q;
+  std::vector<HalfSpace> outside;
+  double area = 0;
+  for (const Index f : patch.removed) {
+    const Corners t = corners_of(cage, f);
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double length = n.norm();
+    if (length > 0) {
+      const Vec3 unit = n / length;
+      const double height = unit.dot(origin - t[0]);
+      outside.push_back({-unit, height});
+      q.gradient += length / 2 * height * unit;
+      q.hessian += length / 2 * unit * unit.transpose();
+      area += length / 2;
+    }
+  }
+  // The volume decides; the distance from the planes of the old faces keeps the vertex near.
+  const double size = std::sqrt(area);
+  q.gradient /= size;
+  q.hessian = q.hessian / size + 0.05 * area / size * Mat3::Identity();
+  for (const auto& [a, b] : ring_of(patch)) {
+    q.gradient += (cage.position(a) - origin).cross(cage.position(b) - origin) / 6;
+  }
+  const std::optional<Vec3> step = minimize_in_half_spaces(q.hessian, q.gradient, outside);
+  return step ? std::optional<Vec3>(origin + *step) : std::nullopt;
+}
+
+} // namespace cagewright

@@ -1,0 +1,388 @@
+#include "improve/relax.h"
+
+#include "core/parallel.h"
+#include "improve/block_program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace cagewright {
+
+namespace {
+
+// Constraints ask for a little more than the clearance: what a step errs by, being linear.
+constexpr double margin = 1.03;
+// Each face is looked at in so many small triangles along a side.
+constexpr int cells = 4;
+
+using Positions = std::vector<Vec3>;
+
+class Relaxation {
+public:
+  Relaxation(WorkingCage& cage, const Guard& guard, const Objective& objective)
+      : cage_(cage), guard_(guard), objective_(objective), at_(cage.mesh.vertex_end()) {
+    for (Index v = 0; v < cage.mesh.vertex_end(); ++v) {
+      at_[v] = cage.mesh.position(v);
+      if (cage.mesh.has_vertex(v)) {
+        number_.push_back(static_cast<Index>(living_.size()));
+        living_.push_back(v);
+      } else {
+        number_.push_back(no_index);
+      }
+    }
+    for (Index f = 0; f < cage.mesh.face_end(); ++f) {
+      if (cage.mesh.has_face(f)) {
+        faces_.push_back(f);
+      }
+    }
+    for (const Vec3& p : at_) {
+      center_ += p / static_cast<double>(at_.size());
+    }
+  }
+
+  double run(const RelaxOptions& options, const Progress& progress) {
+    double reach = options.first_step * objective_.diagonal();
+    double value = total(at_);
+    for (int step = 0; step < options.steps && !progress.cancelled(); ++step) {
+      progress(static_cast<double>(step) / options.steps, "relax");
+      const Positions goal = moved(at_, reach, true);
+      // The constraints curve: what the step has overshot is taken back by a step of its own.
+      const Positions corrected = moved(goal, reach / 2, false);
+      const Positions next = valid_part(corrected);
+      const double lower = total(next);
+      if (lower < value) {
+        const double gain = value - lower;
+        const double promised = value - total(goal);
+        take(next);
+        value = lower;
+        if (gain < options.least_gain * value && gain > promised / 4) {
+          break;
+        }
+        reach *= gain > promised / 2 ? 1.3 : gain < promised / 4 ? 0.5 : 1;
+      } else {
+        reach *= 0.4;
+      }
+    }
+    return value;
+  }
+
+private:
+  [[nodiscard]] Corners corners(const Positions& at, Index f) const {
+    const Triangle& t = cage_.mesh.face(f);
+    return {at[t[0]], at[t[1]], at[t[2]]};
+  }
+
+  [[nodiscard]] double total(const Positions& at) const {
+    return parallel_reduce_ordered(
+        0, faces_.size(), 16, 0.0,
+        [&](std::size_t first, std::size_t last) {
+          double sum = 0;
+          for (std::size_t i = first; i < last; ++i) {
+            const Corners t = corners(at, faces_[i]);
+            sum += (t[0] - center_).dot((t[1] - center_).cross(t[2] - center_)) / 6 +
+                   objective_.face(t);
+          }
+          return sum;
+        },
+        [](double& sum, double part) { sum += part; });
+  }
+
+  // The positions after one quadratic program: of the objective, or only of the constraints.
+  [[nodiscard]] Positions moved(const Positions& at, double reach, bool towards_goal) const {
+    struct Piece {
+      std::vector<BlockConstraint> constraints;
+      std::array<Vec3, 3> gradient{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+      std::array<std::array<Mat3, 3>, 3> hessian;
+    };
+    std::vector<Piece> pieces(faces_.size());
+    parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
+      Piece& piece = pieces[i];
+      for (auto& row : piece.hessian) {
+        row.fill(Mat3::Zero());
+      }
+      const Corners t = corners(at, faces_[i]);
+      add_constraints(faces_[i], t, reach, piece.constraints);
+      if (towards_goal) {
+        add_objective(t, piece.gradient, piece.hessian);
+      }
+    });
+    BlockQuadratic quadratic(living_.size());
+    std::vector<BlockConstraint> constraints;
+    // The program is scaled to lengths of the diagonal and to gradients near one.
+    const double unit = objective_.diagonal();
+    const double scale = static_cast<double>(faces_.size()) / (unit * unit * unit);
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const Triangle& t = cage_.mesh.face(faces_[i]);
+      for (BlockConstraint c : pieces[i].constraints) {
+        c.bound /= unit;
+        constraints.push_back(c);
+      }
+      for (int k = 0; k < 3; ++k) {
+        quadratic.gradient[number_[t[k]]] += scale * unit * pieces[i].gradient[k];
+        for (int m = 0; m <= k; ++m) {
+          quadratic.terms.push_back(
+              {number_[t[k]], number_[t[m]], scale * unit * unit * pieces[i].hessian[k][m]});
+        }
+      }
+    }
+    for (Index v = 0; v < living_.size(); ++v) {
+      // Directions in which nothing changes are held by a weak spring.
+      quadratic.terms.push_back({v, v, (towards_goal ? 2.0 : 50.0) * Mat3::Identity()});
+      for (int k = 0; k < 3; ++k) {
+        constraints.push_back({{v, v, v}, {1, 0, 0}, Vec3::Unit(k), -reach / unit});
+        constraints.push_back({{v, v, v}, {1, 0, 0}, -Vec3::Unit(k), -reach / unit});
+      }
+    }
+    constexpr double slack = 1e-6;
+    const std::vector<Vec3> step = minimize(quadratic, constraints, slack);
+    Positions result = at;
+    for (Index v = 0; v < living_.size(); ++v) {
+      result[living_[v]] += unit * step[v];
+    }
+    return result;
+  }
+
+  void add_objective(const Corners& t, std::array<Vec3, 3>& gradient,
+                     std::array<std::array<Mat3, 3>, 3>& hessian) const {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double area = normal.norm() / 2;
+    if (!(area > 0)) {
+      return;
+    }
+    const Vec3 n = normal / (2 * area);
+    double mean = 0;
+    for (int s = 0; s < 6; ++s) {
+      std::array<double, 3> share;
+      for (int k = 0; k < 3; ++k) {
+        const double spread = s < 3 ? 0.5 : -0.25; // three samples near the corners, three opposite
+        share[k] = s % 3 == k ? 1.0 / 3 + 2 * spread / 3 : 1.0 / 3 - spread / 3;
+      }
+      const Vec3 p = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
+      const SurfaceTree::Nearest near = objective_.model().tree.nearest(p);
+      const double d = near.distance;
+      mean += objective_.gap(d) / 6;
+      if (!(d > 0)) {
+        continue;
+      }
+      const Vec3 u = (p - near.point) / d;
+      const Mat3 outer = area / 6 * objective_.gap_curvature() * u * u.transpose();
+      for (int k = 0; k < 3; ++k) {
+        gradient[k] += area / 6 * share[k] * objective_.gap_slope(d) * u;
+        for (int m = 0; m < 3; ++m) {
+          hessian[k][m] += share[k] * share[m] * outer;
+        }
+      }
+    }
+    const double x = shape_defect(t);
+    const double scaled = 4 * std::numbers::sqrt3 * area;
+    const double weight = objective_.shape_weight();
+    std::array<Vec3, 3> slope;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& a = t[k];
+      const Vec3& b = t[(k + 1) % 3];
+      const Vec3& c = t[(k + 2) % 3];
+      const Vec3 area_slope = n.cross(c - b) / 2;
+      gradient[k] += (b - center_).cross(c - center_) / 6 + mean * area_slope;
+      slope[k] = 2 * (2 * a - b - c) / scaled - (x + 1) / area * area_slope;
+      gradient[k] += 2 * weight * x * slope[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+      for (int m = 0; m < 3; ++m) {
+        const double springs = (k == m ? 2.0 : -1.0) * 2 * x / scaled;
+        hessian[k][m] +=
+            2 * weight * (springs * Mat3::Identity() + slope[k] * slope[m].transpose());
+      }
+    }
+  }
+
+  // Half spaces that keep the face clear of the model for small moves: one for the highest point
+  // of the model below each small triangle of the face, one for the nearest to each of its corners.
+  void add_constraints(Index f, const Corners& t, double reach,
+                       std::vector<BlockConstraint>& constraints) const {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double length = normal.norm();
+    if (!(length > 0)) {
+      return;
+    }
+    const Vec3 n = normal / length;
+    const HalfSpace plane{n, n.dot(t[0])};
+    const double keep = margin * guard_.clearance();
+    const double deepest = -(keep + 2 * reach);
+    const Triangle vertices = numbered(cage_.mesh.face(f));
+    const auto point = [&](int i, int j) {
+      return Vec3(t[0] + (t[1] - t[0]) * i / cells + (t[2] - t[0]) * j / cells);
+    };
+    const auto add_highest = [&](const Corners& cell) {
+      std::array<HalfSpace, 3> sides;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 out = (cell[(k + 1) % 3] - cell[k]).cross(n).normalized();
+        sides[k] = {out, out.dot(cell[k])};
+      }
+      const auto top = objective_.model().tree.highest(plane, sides, deepest, reach);
+      if (top) {
+        const Vec3 foot = top->point - top->height * n;
+        constraints.push_back({vertices, barycentric(foot, t), n, top->height + keep});
+      }
+    };
+    for (int i = 0; i < cells; ++i) {
+      for (int j = 0; i + j < cells; ++j) {
+        add_highest({point(i, j), point(i + 1, j), point(i, j + 1)});
+        if (i + j + 1 < cells) {
+          add_highest({point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)});
+        }
+      }
+    }
+    for (int i = 0; i <= cells; ++i) {
+      for (int j = 0; i + j <= cells; ++j) {
+        const bool on_border = i == 0 || j == 0 || i + j == cells;
+        if (on_border) {
+          add_nearest(vertices, t, point(i, j), keep, reach, constraints);
+        }
+      }
+    }
+    if (const auto pair = objective_.model().tree.nearest_to(t, guard_.clearance())) {
+      const double distance = std::sqrt(pair->squared);
+      const Vec3 u = distance > 0.01 * keep ? Vec3((pair->first - pair->second) / distance) : n;
+      constraints.push_back({vertices, barycentric(pair->first, t), u, keep - distance});
+    }
+  }
+
+  void add_nearest(const Triangle& vertices, const Corners& t, const Vec3& p, double keep,
+                   double reach, std::vector<BlockConstraint>& constraints) const {
+    const SurfaceTree::Nearest near = objective_.model().tree.nearest(p, keep + 2 * reach);
+    if (near.distance > 0.01 * keep && std::isfinite(near.distance)) {
+      const Vec3 u = (p - near.point) / near.distance;
+      constraints.push_back({vertices, barycentric(p, t), u, keep - near.distance});
+    }
+  }
+
+  [[nodiscard]] Triangle numbered(const Triangle& t) const {
+    return {number_[t[0]], number_[t[1]], number_[t[2]]};
+  }
+
+  static std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double squared = n.squaredNorm();
+    const double a = (t[2] - t[1]).cross(p - t[1]).dot(n) / squared;
+    const double b = (t[0] - t[2]).cross(p - t[2]).dot(n) / squared;
+    return {a, b, 1 - a - b};
+  }
+
+  // As much of the way from the present positions to the goal as leaves the cage valid: vertices of
+  // faces in trouble go half of their way, again and again, and in the end nowhere.
+  [[nodiscard]] Positions valid_part(const Positions& goal) const {
+    std::vector<double> share(at_.size(), 1);
+    Positions next = goal;
+    for (;;) {
+      const std::vector<Index> bad = faces_in_trouble(next);
+      if (bad.empty()) {
+        return loses_a_part(next) ? at_ : next;
+      }
+      std::vector<Index> vertices;
+      for (const Index f : bad) {
+        const Triangle& t = cage_.mesh.face(f);
+        vertices.insert(vertices.end(), t.begin(), t.end());
+      }
+      std::sort(vertices.begin(), vertices.end());
+      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      for (const Index v : vertices) {
+        constexpr double least = 0.1;
+        share[v] = share[v] > least ? share[v] / 2 : 0;
+        next[v] = share[v] > 0 ? Vec3(at_[v] + share[v] * (goal[v] - at_[v])) : at_[v];
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<Index> faces_in_trouble(const Positions& next) const {
+    CageMesh moved = cage_.mesh;
+    for (const Index v : living_) {
+      moved.set_position(v, next[v]);
+    }
+    const FaceBoxes boxes(moved);
+    std::vector<std::uint8_t> bad(faces_.size(), 0);
+    parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
+      const Triangle& t = moved.face(faces_[i]);
+      const bool still =
+          next[t[0]] == at_[t[0]] && next[t[1]] == at_[t[1]] && next[t[2]] == at_[t[2]];
+      if (still) {
+        return; // as before the step, when all was well; others report what they do to it
+      }
+      Patch patch; // the face by itself, taken out and put back
+      patch.removed = {faces_[i]};
+      patch.added = {t};
+      bad[i] = static_cast<std::uint8_t>(misshapen(moved, faces_[i]) ||
+                                         guard_.too_near(moved, patch).has_value() ||
+                                         guard_.crosses(moved, boxes, patch));
+    });
+    std::vector<Index> result;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      if (bad[i] != 0) {
+        result.push_back(faces_[i]);
+      }
+    }
+    return result;
+  }
+
+  // Needles and folds are no better than crossings, unless they were there before.
+  [[nodiscard]] bool misshapen(const CageMesh& moved, Index f) const {
+    constexpr double worst_defect = 8;
+    constexpr double sharpest = -0.9;
+    const Corners now = corners_of(moved, f);
+    const Corners before = corners_of(cage_.mesh, f);
+    if (shape_defect(now) > std::max(worst_defect, shape_defect(before))) {
+      return true;
+    }
+    const Triangle& t = moved.face(f);
+    for (int k = 0; k < 3; ++k) {
+      const Index other = moved.face_left_of(t[(k + 1) % 3], t[k]);
+      const double b = bend(now, corners_of(moved, other));
+      if (b < sharpest && b < bend(before, corners_of(cage_.mesh, other))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool loses_a_part(const Positions& next) const {
+    const std::vector<ModelSurface::Part>& parts = guard_.model().parts;
+    std::vector<std::uint8_t> lost(parts.size(), 0);
+    parallel_for(0, parts.size(), 1, [&](std::size_t i) {
+      double angle = 0;
+      for (const Index f : faces_) {
+        angle += solid_angle(parts[i].point, corners(next, f));
+      }
+      lost[i] = static_cast<std::uint8_t>(angle < 2 * std::numbers::pi);
+    });
+    return std::find(lost.begin(), lost.end(), 1) != lost.end();
+  }
+
+  void take(const Positions& next) {
+    at_ = next;
+    for (const Index v : living_) {
+      cage_.mesh.set_position(v, next[v]);
+    }
+    for (const Index f : faces_) {
+      cage_.boxes.update(cage_.mesh, f);
+    }
+  }
+
+  WorkingCage& cage_;
+  const Guard& guard_;
+  const Objective& objective_;
+  Positions at_; // the present, valid positions of all vertices
+  std::vector<Index> number_;
+  std::vector<Index> living_;
+  std::vector<Index> faces_;
+  Vec3 center_ = Vec3::Zero();
+};
+
+} // namespace
+
+double relax(WorkingCage& cage, const Guard& guard, const Objective& objective,
+             const RelaxOptions& options, const Progress& progress) {
+  return Relaxation(cage, guard, objective).run(options, progress);
+}
+
+} // namespace cagewright

@@ -1,0 +1,265 @@
+#include "improve/simplify.h"
+
+#include "core/parallel.h"
+#include "improve/placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace cagewright {
+
+namespace {
+
+using Edge = std::array<Index, 2>;
+
+struct Candidate {
+  double cost = 0;
+  Edge edge{};
+  std::array<std::uint32_t, 2> stamps{};
+  Vec3 position = Vec3::Zero();
+
+  // The cheapest on top; the numbers of the vertices make the order total.
+  bool operator<(const Candidate& other) const {
+    return cost != other.cost ? cost > other.cost : edge > other.edge;
+  }
+};
+
+class Simplifier {
+public:
+  Simplifier(WorkingCage& cage, const Guard& guard, const Objective& objective,
+             const SimplifyOptions& options)
+      : cage_(cage), guard_(guard), objective_(objective), options_(options),
+        stamps_(cage.mesh.vertex_end(), 0), failed_(cage.mesh.vertex_end()) {}
+
+  bool run(const Progress& progress) {
+    offer(all_edges());
+    const std::size_t start = cage_.mesh.vertex_count();
+    while (cage_.mesh.vertex_count() > options_.vertices) {
+      if (progress.cancelled()) {
+        return false;
+      }
+      if (queue_.empty() && !retry()) {
+        break;
+      }
+      if (!queue_.empty()) {
+        const Candidate best = queue_.top();
+        queue_.pop();
+        take(best);
+      }
+      const std::size_t done = start - cage_.mesh.vertex_count();
+      progress(static_cast<double>(done) / static_cast<double>(start - options_.vertices),
+               "simplify");
+    }
+    return true;
+  }
+
+private:
+  [[nodiscard]] std::vector<Edge> all_edges() const {
+    std::vector<Edge> edges;
+    for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
+      if (cage_.mesh.has_face(f)) {
+        const Triangle& t = cage_.mesh.face(f);
+        for (int i = 0; i < 3; ++i) {
+          if (t[i] < t[(i + 1) % 3]) {
+            edges.push_back({t[i], t[(i + 1) % 3]});
+          }
+        }
+      }
+    }
+    return edges;
+  }
+
+  // Evaluates the edges and puts those that can go in the queue.
+  void offer(const std::vector<Edge>& edges) {
+    std::vector<std::optional<Candidate>> candidates(edges.size());
+    parallel_for(0, edges.size(), 1, [&](std::size_t i) { candidates[i] = evaluate(edges[i]); });
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      if (candidates[i]) {
+        queue_.push(*candidates[i]);
+      } else {
+        failed_[edges[i][0]].push_back(edges[i]);
+        failed_[edges[i][1]].push_back(edges[i]);
+      }
+    }
+  }
+
+  [[nodiscard]] std::optional<Candidate> evaluate(const Edge& edge) const {
+    std::optional<Patch> patch = cage_.mesh.collapse(edge[0], edge[1]);
+    if (!patch || !fits_valence(*patch)) {
+      return std::nullopt;
+    }
+    const std::optional<Vec3> position =
+        options_.placement == Placement::outside_patch
+            ? place_outside_patch(cage_.mesh, *patch)
+            : place_clear_of_model(guard_, objective_, cage_.mesh, *patch);
+    if (!position) {
+      return std::nullopt;
+    }
+    patch->position = *position;
+    if (!keeps_shape(cage_.mesh, *patch) || guard_.loses_a_part(cage_.mesh, *patch)) {
+      return std::nullopt;
+    }
+    const double cost = options_.placement == Placement::outside_patch
+                            ? quick_cost(*patch)
+                            : objective_.change(cage_.mesh, *patch);
+    return Candidate{cost, edge, {stamps_[edge[0]], stamps_[edge[1]]}, *position};
+  }
+
+  [[nodiscard]] bool fits_valence(const Patch& patch) const {
+    if (patch.added.size() > options_.most_valence) {
+      return false;
+    }
+    return true;
+  }
+
+  // Volume and shape only.
+  [[nodiscard]] double quick_cost(const Patch& patch) const {
+    double cost = Objective::volume_change(cage_.mesh, patch);
+    const double weight = objective_.shape_weight();
+    for (const Index f : patch.removed) {
+      const double x = shape_defect(corners_of(cage_.mesh, f));
+      cost -= weight * x * x;
+    }
+    for (const Triangle& t : patch.added) {
+      const double x = shape_defect(corners_after(cage_.mesh, patch, t));
+      cost += weight * x * x;
+    }
+    return cost;
+  }
+
+  // The cheapest candidate is collapsed, unless its surroundings have changed since it was
+  // evaluated: then it is evaluated again.
+  void take(const Candidate& candidate) {
+    const auto& [u, v] = candidate.edge;
+    if (!cage_.mesh.has_vertex(u) || !cage_.mesh.has_vertex(v)) {
+      return;
+    }
+    if (candidate.stamps != std::array{stamps_[u], stamps_[v]}) {
+      if (cage_.mesh.face_left_of(u, v) != no_index) {
+        offer({candidate.edge});
+      }
+      return;
+    }
+    Patch patch = *cage_.mesh.collapse(u, v);
+    patch.position = candidate.position;
+    // Any other part of the cage may have moved here since.
+    if (guard_.crosses(cage_.mesh, cage_.boxes, patch)) {
+      failed_[u].push_back(candidate.edge);
+      failed_[v].push_back(candidate.edge);
+      return;
+    }
+    cage_.apply(patch);
+    changed_ = true;
+    std::vector<Edge> again;
+    touch(u, again);
+    for (const Index w : cage_.mesh.neighbors(u)) {
+      again.push_back({std::min(u, w), std::max(u, w)});
+      touch(w, again);
+    }
+    std::sort(again.begin(), again.end());
+    again.erase(std::unique(again.begin(), again.end()), again.end());
+    offer(again);
+  }
+
+  // The faces at v have changed: its failed edges get another chance.
+  void touch(Index v, std::vector<Edge>& again) {
+    ++stamps_[v];
+    for (const Edge& edge : std::exchange(failed_[v], {})) {
+      if (cage_.mesh.has_vertex(edge[0]) && cage_.mesh.has_vertex(edge[1]) &&
+          cage_.mesh.face_left_of(edge[0], edge[1]) != no_index) {
+        again.push_back(edge);
+      }
+    }
+  }
+
+  // All edges once more, if any has been collapsed since the last time.
+  bool retry() {
+    if (!std::exchange(changed_, false)) {
+      return false;
+    }
+    for (auto& list : failed_) {
+      list.clear();
+    }
+    offer(all_edges());
+    return !queue_.empty();
+  }
+
+  WorkingCage& cage_;
+  const Guard& guard_;
+  const Objective& objective_;
+  SimplifyOptions options_;
+  std::vector<std::uint32_t> stamps_; // of a vertex: how often the faces at it have changed
+  std::vector<std::vector<Edge>> failed_;
+  std::priority_queue<Candidate> queue_;
+  bool changed_ = false;
+};
+
+} // namespace
+
+void WorkingCage::apply(const Patch& patch) {
+  const std::vector<Index> added = mesh.apply(patch);
+  for (const Index f : patch.removed) {
+    boxes.update(mesh, f);
+  }
+  for (const Index f : added) {
+    boxes.update(mesh, f);
+  }
+}
+
+bool simplify(WorkingCage& cage, const Guard& guard, const Objective& objective,
+              const SimplifyOptions& options, const Progress& progress) {
+  return Simplifier(cage, guard, objective, options).run(progress);
+}
+
+bool keeps_shape(const CageMesh& cage, const Patch& patch) {
+  constexpr double sharpest = -0.9; // 154 degrees between the normals: 26 between the faces
+  constexpr double worst_defect = 8;
+  double old_bend = 1;
+  double old_defect = 0;
+  for (const Index f : patch.removed) {
+    const Triangle& t = cage.face(f);
+    const Corners at = corners_of(cage, f);
+    old_defect = std::max(old_defect, shape_defect(at));
+    for (int i = 0; i < 3; ++i) {
+      const Index other = cage.face_left_of(t[(i + 1) % 3], t[i]);
+      old_bend = std::min(old_bend, bend(at, corners_of(cage, other)));
+    }
+  }
+  const double least_bend = std::min(sharpest, old_bend);
+  const double most_defect = std::max(worst_defect, old_defect);
+  for (std::size_t i = 0; i < patch.added.size(); ++i) {
+    const Triangle& t = patch.added[i];
+    const Corners at = corners_after(cage, patch, t);
+    if (shape_defect(at) > most_defect) {
+      return false;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const Index a = t[(k + 1) % 3];
+      const Index b = t[k];
+      // Across the edge there is another new face, or an old one that stays.
+      bool found = false;
+      for (std::size_t j = 0; j < patch.added.size() && !found; ++j) {
+        const Triangle& s = patch.added[j];
+        for (int m = 0; m < 3 && !found; ++m) {
+          found = s[m] == a && s[(m + 1) % 3] == b;
+        }
+        if (found && bend(at, corners_after(cage, patch, s)) < least_bend) {
+          return false;
+        }
+      }
+      if (!found) {
+        const Index outer = cage.face_left_of(a, b);
+        if (outer != no_index && bend(at, corners_of(cage, outer)) < least_bend) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+} // namespace cagewright

@@ -1,0 +1,44 @@
+/// \file
+/// Fewer vertices, one edge collapse after the other.
+#pragma once
+
+#include "core/progress.h"
+#include "improve/objective.h"
+
+namespace cagewright {
+
+/// How the vertex that remains of an edge is placed.
+enum class Placement {
+  outside_patch,  ///< outside the planes of the old faces: quick, never asks the model, grows
+  clear_of_model, ///< where it lowers the objective, clear of the model
+};
+
+struct SimplifyOptions {
+  std::size_t vertices = 4;
+  Placement placement = Placement::clear_of_model;
+  std::size_t most_valence = 10;
+};
+
+/// The cage under change, and what has to be kept beside it.
+struct WorkingCage {
+  explicit WorkingCage(TriangleView start) : mesh(start), boxes(mesh) {}
+
+  /// Makes the change and keeps the boxes up to date.
+  void apply(const Patch& patch);
+
+  CageMesh mesh;
+  FaceBoxes boxes;
+};
+
+/// Collapses edges, the one that costs the objective least first, until the number of vertices is
+/// reached or no edge is left that can go. The cage stays valid throughout.
+///
+/// \returns false if it was cancelled; the cage is valid then too
+bool simplify(WorkingCage& cage, const Guard& guard, const Objective& objective,
+              const SimplifyOptions& options, const Progress& progress = {});
+
+/// True when no two faces that meet at the patch's new faces fold onto each other more sharply than
+/// before, and no new face is a needle unless an old one was worse.
+bool keeps_shape(const CageMesh& cage, const Patch& patch);
+
+} // namespace cagewright
