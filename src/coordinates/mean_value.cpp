@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <bit>
 #include <cmath>
 #include <mutex>
 #include <string>
@@ -311,54 +311,72 @@ TileReport MeanValueSolver::preview(std::span<const Vec3> points, std::span<floa
 }
 
 template <class T>
-Result<WeightTiles<T>> solve_all(const MeanValueSolver& solver, std::span<const Vec3> points,
-                                 const Progress& progress) {
+Result<SolvedWeights<T>> solve_all(const MeanValueSolver& solver, std::span<const Vec3> points,
+                                   const Progress& progress) {
   constexpr std::size_t tile_points = WeightTiles<T>::tile_points;
-  WeightTiles<T> weights(points.size(), solver.cage_vertices());
+  SolvedWeights<T> solved{{points.size(), solver.cage_vertices()}};
   std::mutex reporting;
   std::size_t finished = 0;
   // Eight tiles, a few hundred microseconds, between two looks at the stop token.
   constexpr std::size_t block = 8;
-  const std::size_t blocks = (weights.tile_count() + block - 1) / block;
+  const std::size_t blocks = (solved.weights.tile_count() + block - 1) / block;
   parallel_for(0, blocks, 1, [&](std::size_t b) {
     if (progress.cancelled()) {
       return;
     }
-    const std::size_t end = std::min((b + 1) * block, weights.tile_count());
+    int on_surface = 0;
+    int undefined = 0;
+    const std::size_t end = std::min((b + 1) * block, solved.weights.tile_count());
     for (std::size_t t = b * block; t < end; ++t) {
       const std::size_t first = t * tile_points;
-      solver.solve(points.subspan(first, std::min(tile_points, points.size() - first)),
-                   weights.tile(t));
+      const TileReport report =
+          solver.solve(points.subspan(first, std::min(tile_points, points.size() - first)),
+                       solved.weights.tile(t));
+      on_surface += std::popcount(report.on_surface);
+      undefined += std::popcount(report.undefined);
     }
     const std::scoped_lock lock(reporting);
+    solved.on_surface += static_cast<std::size_t>(on_surface);
+    solved.undefined += static_cast<std::size_t>(undefined);
     progress(static_cast<double>(++finished) / static_cast<double>(blocks), "bind");
   });
   if (progress.cancelled()) {
     return Error::cancelled();
   }
-  return weights;
+  return solved;
 }
 
-template Result<Weights> solve_all(const MeanValueSolver&, std::span<const Vec3>, const Progress&);
-template Result<FloatWeights> solve_all(const MeanValueSolver&, std::span<const Vec3>,
-                                        const Progress&);
+template Result<SolvedWeights<double>> solve_all(const MeanValueSolver&, std::span<const Vec3>,
+                                                 const Progress&);
+template Result<SolvedWeights<float>> solve_all(const MeanValueSolver&, std::span<const Vec3>,
+                                                const Progress&);
 
-Result<Weights> mean_value_coordinates(TriangleView cage, std::span<const Vec3> points,
-                                       const MeanValueOptions& options, const Progress& progress) {
+namespace {
+
+template <class Cage>
+Result<Weights> coordinates_in(const Cage& cage, std::span<const Vec3> points,
+                               const MeanValueOptions& options, const Progress& progress) {
   const Result<MeanValueSolver> solver = MeanValueSolver::create(cage, options);
   if (!solver) {
     return solver.error();
   }
-  return solve_all<double>(*solver, points, progress);
+  Result<SolvedWeights<double>> solved = solve_all<double>(*solver, points, progress);
+  if (!solved) {
+    return solved.error();
+  }
+  return std::move(solved->weights);
+}
+
+} // namespace
+
+Result<Weights> mean_value_coordinates(TriangleView cage, std::span<const Vec3> points,
+                                       const MeanValueOptions& options, const Progress& progress) {
+  return coordinates_in(cage, points, options, progress);
 }
 
 Result<Weights> mean_value_coordinates(const PolygonMesh& cage, std::span<const Vec3> points,
                                        const MeanValueOptions& options, const Progress& progress) {
-  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage, options);
-  if (!solver) {
-    return solver.error();
-  }
-  return solve_all<double>(*solver, points, progress);
+  return coordinates_in(cage, points, options, progress);
 }
 
 } // namespace cagewright

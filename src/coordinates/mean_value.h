@@ -87,10 +87,16 @@ Result<Weights> mean_value_coordinates(const PolygonMesh& cage, std::span<const 
                                        const MeanValueOptions& options = {},
                                        const Progress& progress = {});
 
+template <class T> struct SolvedWeights {
+  WeightTiles<T> weights;
+  std::size_t on_surface = 0; ///< points that lie on the cage
+  std::size_t undefined = 0;  ///< points without weights: their rows are zero
+};
+
 /// The weights of all points from a prepared cage; T is double or float.
 /// Errors: cancelled.
 template <class T>
-Result<WeightTiles<T>> solve_all(const MeanValueSolver& solver, std::span<const Vec3> points,
-                                 const Progress& progress = {});
+Result<SolvedWeights<T>> solve_all(const MeanValueSolver& solver, std::span<const Vec3> points,
+                                   const Progress& progress = {});
 
 } // namespace cagewright

@@ -451,12 +451,12 @@ TEST(MeanValueBinding, StoresTheNearestFloats) {
   const TriangleMesh cage = make_icosphere(1);
   const std::vector<Vec3> points = many_points(50);
   const MeanValueSolver solver = solver_for(cage);
-  const Result<Weights> exact = solve_all<double>(solver, points);
-  const Result<FloatWeights> rounded = solve_all<float>(solver, points);
+  const auto exact = solve_all<double>(solver, points);
+  const auto rounded = solve_all<float>(solver, points);
   ASSERT_TRUE(exact && rounded);
   for (std::size_t p = 0; p < points.size(); ++p) {
     for (std::size_t c = 0; c < cage.positions.size(); ++c) {
-      ASSERT_EQ(rounded->at(p, c), static_cast<float>(exact->at(p, c)));
+      ASSERT_EQ(rounded->weights.at(p, c), static_cast<float>(exact->weights.at(p, c)));
     }
   }
 }

@@ -1,0 +1,50 @@
+/// \file
+/// Weights times displacements: where the points go.
+#pragma once
+
+#include "coordinates/weights.h"
+#include "core/geometry.h"
+#include "mesh/triangle_mesh.h"
+
+#include <cstdint>
+#include <span>
+
+namespace cagewright {
+
+/// Moves points by the displacements of k of the cage's vertices:
+///     positions[p] = base[p] + sum over k of weight(p, cage_vertices[k]) * displacements[k],
+/// in double whatever the weights are stored as. `base` is the rest for a pose from scratch, or
+/// `positions` itself to go on from where they are.
+///
+/// \param cage_vertices  k indices < C
+/// \param displacements  k vectors (times the step, for the tiles of CompactWeights)
+/// \param moved          empty, or for each tile of 16 points the greatest change of a coordinate
+///                       so far: this call's is added
+///
+/// On all cores of the calling arena; the result does not depend on their number. No memory is
+/// taken. Cost: bounded by reading k P weights.
+template <class T>
+void move_points(const WeightTiles<T>& weights, std::span<const Index> cage_vertices,
+                 std::span<const Vec3> displacements, std::span<const Vec3> base,
+                 std::span<Vec3> positions, std::span<double> moved = {});
+
+extern template void move_points(const WeightTiles<double>&, std::span<const Index>,
+                                 std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>,
+                                 std::span<double>);
+extern template void move_points(const WeightTiles<float>&, std::span<const Index>,
+                                 std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>,
+                                 std::span<double>);
+extern template void move_points(const WeightTiles<std::int16_t>&, std::span<const Index>,
+                                 std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>,
+                                 std::span<double>);
+
+/// The same for one tile of weights that is at hand, and up to 16 points.
+template <class T>
+void move_tile(std::span<const T> tile, std::span<const Index> cage_vertices,
+               std::span<const Vec3> displacements, std::span<const Vec3> base,
+               std::span<Vec3> positions);
+
+extern template void move_tile(std::span<const double>, std::span<const Index>,
+                               std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>);
+
+} // namespace cagewright
