@@ -9,6 +9,13 @@
 
 namespace cagewright {
 
+VoxelGrid in_grid_coordinates(const VoxelGrid& grid) {
+  VoxelGrid plain;
+  plain.dims = grid.dims;
+  plain.kinds = grid.kinds;
+  return plain;
+}
+
 Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& options,
                                    const Progress& progress) {
   if (options.resolution < 8 || options.resolution > 512) {
@@ -43,17 +50,13 @@ Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& o
   }
   watch.lap("voxels");
 
-  Result<BoxTree> tree = build_box_tree(made.grid, options.slicing, progress.part(0.8, 1));
+  Result<BoxTree> tree = build_box_tree(in_grid_coordinates(made.grid), options.slicing, progress.part(0.8, 1));
   if (!tree) {
     return tree.error();
   }
   made.tree = std::move(*tree);
   watch.lap("slicing");
   return made;
-}
-
-OrientedBox in_model_units(const UnitFrame& frame, const OrientedBox& box) {
-  return {frame.from_unit(box.center), box.axes, box.half * frame.diagonal};
 }
 
 } // namespace cagewright

@@ -27,17 +27,30 @@ struct DecomposeOptions {
   SlicingOptions slicing = {};
 };
 
-/// All that was made on the way to the boxes. Boxes and voxels are in the unit coordinates of
-/// `frame`.
+/// All that was made on the way to the boxes.
 struct BoxDecomposition {
-  UnitFrame frame;
-  OrientedBox vertex_box; ///< PCA box of the model's vertices
-  OrientedBox point_box;  ///< PCA box of the vertices and the voxel centers
-  VoxelGrid grid;         ///< in the frame of point_box
+  UnitFrame frame;        ///< between the model's coordinates and unit coordinates
+  OrientedBox vertex_box; ///< PCA box of the model's vertices, in unit coordinates
+  OrientedBox point_box;  ///< PCA box of vertices and voxel centers, in unit coordinates
+  VoxelGrid grid;         ///< in the frame of point_box, in unit coordinates
   int bridges = 0;        ///< bridges of voxels that join the pieces
+  /// Boxes and cuts in the coordinates of the grid, in which voxel (i, j, k) is the cube from
+  /// (i, j, k) to (i+1, j+1, k+1). There all input is whole numbers: moved and scaled copies of a
+  /// model, which give the same voxels, give the very same tree.
   BoxTree tree;
   std::vector<StageTime> times;
+
+  /// The edge of a voxel in the model's units.
+  [[nodiscard]] double voxel_size() const { return grid.size * frame.diagonal; }
+  /// From grid coordinates to the model's.
+  [[nodiscard]] Vec3 to_model(const Vec3& p) const { return frame.from_unit(grid.to_world(p)); }
+  [[nodiscard]] OrientedBox to_model(const OrientedBox& box) const {
+    return {to_model(box.center), grid.axes * box.axes, box.half * voxel_size()};
+  }
 };
+
+/// The same voxels in the grid's own coordinates: unit cubes along the axes, from the origin.
+VoxelGrid in_grid_coordinates(const VoxelGrid& grid);
 
 /// PCA box of the vertices, voxels in its frame, PCA box of vertices and voxel centers together,
 /// voxels again, slicing.
@@ -47,8 +60,5 @@ struct BoxDecomposition {
 /// Cost: a third of a second for 100,000 triangles at the default resolution, on two cores.
 Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& options = {},
                                    const Progress& progress = {});
-
-/// A box of a decomposition, in the coordinates of the model.
-OrientedBox in_model_units(const UnitFrame& frame, const OrientedBox& box);
 
 } // namespace cagewright
