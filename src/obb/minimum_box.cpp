@@ -183,7 +183,7 @@ private:
       Mat3 turned = axes;
       const Vec3 turned_edges = turn_about(axis, turned, edges);
       const bool gains = cost(turned_edges) < before * (1 - gain);
-      idle = gains ? 0 : idle + 1;
+      idle = gains ? 1 : idle + 1; // the axis just turned about has nothing more to give
       if (gains) {
         axes = turned;
         edges = turned_edges;

@@ -259,39 +259,63 @@ private:
   }
 
   // Votes are first averaged over neighbours in the region, twice: a wrong ray makes a line of
-  // wrong votes, one voxel thin, while the inside near a hole has many agreeing.
+  // wrong votes, one voxel thin, while the inside near a hole has many agreeing. Only voxels with
+  // half the votes can come out inner, and in most regions they are few.
   void decide_one_by_one() {
+    std::vector<std::size_t> doubtful;
     std::vector<float> share(grid_.kinds.size(), -1);
     for (const std::size_t i : region_) {
       share[i] = static_cast<float>(votes_[i]) / 6;
+      if (votes_[i] >= 3) {
+        doubtful.push_back(i);
+      }
     }
-    for (int pass = 0; pass < 2; ++pass) {
-      share = smoothed(share);
-    }
-    for (const std::size_t i : region_) {
-      if (share[i] > 0.6F && votes_[i] >= 3) {
+    share = averaged(averaged(share, with_neighbors(doubtful)), doubtful);
+    for (const std::size_t i : doubtful) {
+      if (share[i] > 0.6F) {
         grid_.kinds[i] = VoxelKind::inner;
       }
     }
   }
 
-  [[nodiscard]] std::vector<float> smoothed(const std::vector<float>& share) const {
-    std::vector<float> result(share.size(), -1);
-    parallel_for(0, region_.size(), 1024, [&](std::size_t r) {
-      const std::size_t i = region_[r];
-      const std::array<int, 3> c = grid_.cell(i);
-      float sum = 0;
-      int count = 0;
-      for (int z = std::max(c[2] - 1, 0); z <= std::min(c[2] + 1, grid_.dims[2] - 1); ++z) {
-        for (int y = std::max(c[1] - 1, 0); y <= std::min(c[1] + 1, grid_.dims[1] - 1); ++y) {
-          for (int x = std::max(c[0] - 1, 0); x <= std::min(c[0] + 1, grid_.dims[0] - 1); ++x) {
-            const float s = share[grid_.index(x, y, z)];
-            sum += s >= 0 ? s : 0;
-            count += s >= 0;
-          }
+  template <class Visit> void for_each_neighbor(std::size_t i, const Visit& visit) const {
+    const std::array<int, 3> c = grid_.cell(i);
+    for (int z = std::max(c[2] - 1, 0); z <= std::min(c[2] + 1, grid_.dims[2] - 1); ++z) {
+      for (int y = std::max(c[1] - 1, 0); y <= std::min(c[1] + 1, grid_.dims[1] - 1); ++y) {
+        for (int x = std::max(c[0] - 1, 0); x <= std::min(c[0] + 1, grid_.dims[0] - 1); ++x) {
+          visit(grid_.index(x, y, z));
         }
       }
-      result[i] = sum / static_cast<float>(count);
+    }
+  }
+
+  [[nodiscard]] std::vector<std::size_t>
+  with_neighbors(const std::vector<std::size_t>& voxels) const {
+    std::vector<bool> taken(grid_.kinds.size(), false);
+    std::vector<std::size_t> result;
+    for (const std::size_t i : voxels) {
+      for_each_neighbor(i, [&](std::size_t n) {
+        if (!taken[n] && grid_.kinds[n] != VoxelKind::feature) {
+          taken[n] = true;
+          result.push_back(n);
+        }
+      });
+    }
+    return result;
+  }
+
+  // The mean of the shares of these voxels' neighbours, those of less than 0 left out.
+  [[nodiscard]] std::vector<float> averaged(const std::vector<float>& share,
+                                            const std::vector<std::size_t>& voxels) const {
+    std::vector<float> result(share.size(), -1);
+    parallel_for(0, voxels.size(), 1024, [&](std::size_t v) {
+      float sum = 0;
+      int count = 0;
+      for_each_neighbor(voxels[v], [&](std::size_t n) {
+        sum += std::max(share[n], 0.0F);
+        count += share[n] >= 0;
+      });
+      result[voxels[v]] = count > 0 ? sum / static_cast<float>(count) : -1;
     });
     return result;
   }
