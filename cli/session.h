@@ -34,10 +34,6 @@ struct Session {
 /// Prints "cagewright: <message>" on stderr and returns the exit code that goes with the error.
 int fail(const Error& error);
 
-/// Opens a file that appears under its name only when it is complete: writes `text` beside it,
-/// then renames.
-Status write_text_file(const std::string& path, const std::string& text);
-
 #ifdef CAGEWRIGHT_HAS_RENDER
 #define CAGEWRIGHT_RENDER_COMMAND(X) X(render)
 #else
@@ -47,7 +43,7 @@ Status write_text_file(const std::string& path, const std::string& text);
 // One function for each command, in cli/commands/<name>.cpp: it declares the options and what to
 // run. The order is that of --help.
 #define CAGEWRIGHT_COMMANDS(X) \
-  X(info) CAGEWRIGHT_RENDER_COMMAND(X)
+  X(info) X(check) CAGEWRIGHT_RENDER_COMMAND(X)
 #define CAGEWRIGHT_DECLARE(name) void add_##name(CLI::App& app, Session& session);
 CAGEWRIGHT_COMMANDS(CAGEWRIGHT_DECLARE)
 #undef CAGEWRIGHT_DECLARE
