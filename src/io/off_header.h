@@ -2,6 +2,7 @@
 /// The first word of an OFF file.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -41,6 +42,12 @@ constexpr std::optional<OffHeader> off_header(std::string_view word) {
     word.remove_prefix(1);
   }
   return header;
+}
+
+/// Bytes of a vertex in a binary file: floats only.
+constexpr std::size_t off_vertex_size(const OffHeader& header) {
+  return 12 + (header.has_normal ? 12 : 0) + (header.has_color ? 16 : 0) +
+         (header.has_texture ? 8 : 0);
 }
 
 } // namespace cagewright

@@ -10,8 +10,11 @@ namespace {
 
 using Transform = Eigen::Affine3d;
 
-// The instances of a file may multiply what it stores; beyond this it is a mistake or a trap.
-constexpr std::size_t most_corners = std::size_t{1} << 28U;
+// The instances of a file may multiply what it stores: beyond 22 million triangles that is a
+// mistake or a trap. What a file stores once is never refused, for a corner takes at least a byte.
+std::size_t most_corners(const Source& source) {
+  return std::max(std::size_t{1} << 26U, source.bytes.size());
+}
 
 // glTF's numbers for what a primitive's indices mean.
 enum class Mode { triangles = 4, strip = 5, fan = 6 };
@@ -265,8 +268,8 @@ private:
     if (largest != indices.end() && *largest >= vertices->count) {
       return source_.error(no_such_vertex(where, std::to_string(*largest), vertices->count));
     }
-    if (mesh_.corners().size() + 3 * indices.size() > most_corners) {
-      return source_.error("shows more than 89 million triangles; simplify the model",
+    if (mesh_.corners().size() + 3 * indices.size() > most_corners(source_)) {
+      return source_.error("shows more than 22 million triangles; simplify the model",
                            ErrorCode::too_large);
     }
     // A transform that mirrors turns the triangles inside out (glTF 2.0, 3.7.4).
@@ -305,8 +308,8 @@ private:
       return values.error();
     }
     const Vertices vertices{static_cast<Index>(mesh_.positions.size()), values->size() / 3};
-    if (mesh_.positions.size() + vertices.count > most_corners) {
-      return source_.error("shows more than 268 million vertices; simplify the model",
+    if (mesh_.positions.size() + vertices.count > most_corners(source_)) {
+      return source_.error("shows more than 67 million vertices; simplify the model",
                            ErrorCode::too_large);
     }
     for (std::size_t v = 0; v < vertices.count; ++v) {

@@ -13,8 +13,9 @@ namespace {
 
 class ObjReader {
 public:
-  explicit ObjReader(const Source& source)
-      : source_(source), cursor_(source, TextCursor::Backslash::continues) {}
+  /// With `normals` given, fills it as well.
+  explicit ObjReader(const Source& source, FileNormals* normals = nullptr)
+      : normals_(normals), source_(source), cursor_(source, TextCursor::Backslash::continues) {}
 
   Result<PolygonMesh> read() {
     for (; cursor_.next_word_of_file(); cursor_.next_line()) {
@@ -29,6 +30,9 @@ public:
       mesh_.colors.resize(mesh_.positions.size(), white);
       normalize_colors(mesh_);
     }
+    if (normals_ != nullptr) {
+      finish_normals();
+    }
     return std::move(mesh_);
   }
 
@@ -41,6 +45,9 @@ private:
     }
     if (keyword == "f" || keyword == "fo") { // fo: the name in the first version of the format
       return read_face(begin);
+    }
+    if (keyword == "vn" && normals_ != nullptr) {
+      return read_normal();
     }
     if (keyword == "o" || keyword == "g") {
       const std::string_view name = cursor_.rest_of_line();
@@ -95,6 +102,30 @@ private:
     return success();
   }
 
+  Status read_normal() {
+    Vec3& normal = normals_->normals.emplace_back();
+    for (double& component : normal) {
+      cursor_.skip_blanks();
+      const std::optional<double> value = cursor_.any_number();
+      if (!value) {
+        return cursor_.error("a normal needs 3 numbers" + std::string(export_again));
+      }
+      component = *value;
+    }
+    return success();
+  }
+
+  // Faces may stand before their normals, so that only the end shows which there are.
+  void finish_normals() {
+    const std::size_t count = normals_->normals.size();
+    for (Index& corner : normals_->of_corner) {
+      corner = corner < count ? corner : FileNormals::none;
+    }
+    if (count == 0) {
+      normals_->of_corner.clear();
+    }
+  }
+
   Status read_face(std::size_t begin) {
     corners_.clear();
     for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) {
@@ -123,10 +154,24 @@ private:
 
   // The "/vt", "//vn" or "/vt/vn" after a corner's vertex.
   bool skip_texture_and_normal() {
+    std::optional<std::int64_t> normal;
     for (int i = 0; i < 2 && cursor_.skip('/'); ++i) {
-      cursor_.integer_prefix();
+      const std::optional<std::int64_t> index = cursor_.integer_prefix();
+      normal = i == 1 ? index : std::nullopt;
+    }
+    if (normals_ != nullptr) {
+      normals_->of_corner.push_back(normal_index(normal));
     }
     return cursor_.at_word_end();
+  }
+
+  [[nodiscard]] Index normal_index(const std::optional<std::int64_t>& normal) const {
+    if (!normal || *normal == 0) {
+      return FileNormals::none;
+    }
+    const auto count = static_cast<std::int64_t>(normals_->normals.size());
+    const std::int64_t index = *normal > 0 ? *normal - 1 : *normal + count;
+    return index >= 0 && index < FileNormals::none ? static_cast<Index>(index) : FileNormals::none;
   }
 
   Error corner_error(std::size_t word) {
@@ -192,6 +237,7 @@ private:
     mesh_.face_groups.push_back(*group_index_);
   }
 
+  FileNormals* normals_; // or null
   Source source_;
   TextCursor cursor_;
   PolygonMesh mesh_;
@@ -207,6 +253,12 @@ private:
 
 Result<PolygonMesh> read_obj(const Source& source) {
   return ObjReader(source).read();
+}
+
+Result<FileNormals> read_obj_normals(const Source& source) {
+  FileNormals normals;
+  const Result<PolygonMesh> mesh = ObjReader(source, &normals).read();
+  return mesh ? Result<FileNormals>(std::move(normals)) : mesh.error();
 }
 
 } // namespace cagewright

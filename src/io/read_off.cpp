@@ -211,8 +211,7 @@ public:
     const std::optional<std::uint32_t> vertices = integer();
     const std::optional<std::uint32_t> faces = integer();
     const std::optional<std::uint32_t> edges = integer();
-    const std::size_t vertex_size = 12 + (header_.has_normal ? 12 : 0) +
-                                    (header_.has_color ? 16 : 0) + (header_.has_texture ? 8 : 0);
+    const std::size_t vertex_size = off_vertex_size(header_);
     if (!edges || remaining() < *vertices * vertex_size ||
         remaining() - *vertices * vertex_size < std::size_t{8} * *faces) {
       return source_.error_at_byte(begin, "the file ends before the vertices and faces that the "

@@ -11,21 +11,6 @@ namespace {
 constexpr std::size_t header_size = 84; // 80 bytes of anything, then the count of facets
 constexpr std::size_t facet_size = 50;  // normal, three corners, two spare bytes
 
-std::string lower_case(std::string_view word) {
-  std::string lower(word.substr(0, 16)); // no keyword is longer
-  for (char& c : lower) {
-    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  }
-  return lower;
-}
-
-// Binary files often begin with "solid" too, so that alone decides nothing.
-bool is_text(const Source& source) {
-  TextCursor cursor(source);
-  return cursor.next_word_of_file() && lower_case(cursor.word()) == "solid" &&
-         source.bytes.substr(0, 1024).find('\0') == std::string_view::npos;
-}
-
 Result<PolygonMesh> read_binary(const Source& source) {
   const std::string_view bytes = source.bytes;
   if (bytes.size() < header_size) {
@@ -94,7 +79,7 @@ public:
 private:
   Status read_statement() {
     const std::size_t begin = cursor_.offset();
-    const std::string keyword = lower_case(cursor_.word());
+    const std::string keyword = stl_keyword(cursor_.word());
     if (keyword == "vertex") {
       return read_vertex();
     }
@@ -154,8 +139,22 @@ private:
 
 } // namespace
 
+std::string stl_keyword(std::string_view word) {
+  std::string lower(word.substr(0, 16)); // no keyword is longer
+  for (char& c : lower) {
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  }
+  return lower;
+}
+
+bool is_stl_text(const Source& source) {
+  TextCursor cursor(source);
+  return cursor.next_word_of_file() && stl_keyword(cursor.word()) == "solid" &&
+         source.bytes.substr(0, 1024).find('\0') == std::string_view::npos;
+}
+
 Result<PolygonMesh> read_stl(const Source& source) {
-  return is_text(source) ? StlTextReader(source).read() : read_binary(source);
+  return is_stl_text(source) ? StlTextReader(source).read() : read_binary(source);
 }
 
 } // namespace cagewright

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "io/rewrite_positions.h"
 #include "io/source.h"
 #include "mesh/polygon_mesh.h"
 
@@ -10,13 +11,22 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 
 namespace cagewright {
 
 Result<PolygonMesh> read_obj(const Source& source);
+Result<FileNormals> read_obj_normals(const Source& source);
 Result<PolygonMesh> read_off(const Source& source);
 Result<PolygonMesh> read_ply(const Source& source);
 Result<PolygonMesh> read_stl(const Source& source);
+
+/// Whether an STL file is text. Binary files often begin with "solid" too, so that decides nothing.
+bool is_stl_text(const Source& source);
+
+/// A word of an STL file in lower case: programs differ.
+std::string stl_keyword(std::string_view word);
 
 /// `folder` is where the buffers in files of their own are; none: they are refused.
 Result<PolygonMesh> read_gltf(const Source& source,

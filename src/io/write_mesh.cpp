@@ -1,12 +1,12 @@
 #include "io/write_mesh.h"
 
 #include "io/atomic_file.h"
+#include "io/number_text.h"
 #include "io/source.h"
 #include "mesh/triangulate.h"
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -34,9 +34,7 @@ public:
 
   // The shortest digits that read back as the same number.
   template <class Number> Text& number(Number value) {
-    char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-    text_.append(digits, end);
+    append_number(text_, value);
     return *this;
   }
 
@@ -122,8 +120,7 @@ std::string format_stl(const PolygonMesh& mesh) {
     const Vec3& a = mesh.positions[t[0]];
     const Vec3& b = mesh.positions[t[1]];
     const Vec3& c = mesh.positions[t[2]];
-    const Vec3 normal = (b - a).stableNormalized().cross((c - a).stableNormalized());
-    text << "facet normal " << normal.stableNormalized() << "\nouter loop\n";
+    text << "facet normal " << facet_normal(a, b, c) << "\nouter loop\n";
     text << "vertex " << a << "\nvertex " << b << "\nvertex " << c << "\nendloop\nendfacet\n";
   }
   text << "endsolid cagewright\n";

@@ -1,0 +1,366 @@
+#include "io/rewrite_positions.h"
+
+#include "io/atomic_file.h"
+#include "io/binary.h"
+#include "io/mesh_format.h"
+#include "io/number_text.h"
+#include "io/off_header.h"
+#include "io/ply_values.h"
+#include "io/read_file.h"
+#include "io/read_mesh.h"
+#include "io/readers.h"
+#include "io/text_cursor.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
+
+namespace cagewright {
+namespace {
+
+/// A copy of a file in which some places are replaced, from front to back.
+class Copy {
+public:
+  explicit Copy(const Source& source) : source_(source) {
+    text_.reserve(source.bytes.size() + source.bytes.size() / 4);
+  }
+
+  /// The bytes [begin, end) of the file become the digits of a number.
+  void replace(std::size_t begin, std::size_t end, double value) {
+    text_.append(source_.bytes.substr(copied_, begin - copied_));
+    append_number(text_, value);
+    copied_ = end;
+  }
+
+  /// The three numbers at the cursor, which the reader has found to be there.
+  void replace_numbers(TextCursor& cursor, const Vec3& values) {
+    for (const double value : values) {
+      cursor.skip_blanks();
+      const std::size_t begin = cursor.offset();
+      cursor.any_number();
+      replace(begin, cursor.offset(), value);
+    }
+  }
+
+  std::string take() && {
+    text_.append(source_.bytes.substr(copied_));
+    return std::move(text_);
+  }
+
+private:
+  Source source_;
+  std::size_t copied_ = 0; // bytes of the file that are done with
+  std::string text_;
+};
+
+struct Geometry {
+  std::span<const Vec3> positions;
+  std::span<const Vec3> normals; // or none
+};
+
+// All of the following are called with a file that the reader has accepted, and with as many
+// positions as it gave.
+
+std::string rewrite_obj(const Source& source, const Geometry& geometry) {
+  Copy copy(source);
+  TextCursor cursor(source, TextCursor::Backslash::continues);
+  std::size_t vertex = 0;
+  std::size_t normal = 0;
+  for (; cursor.next_word_of_file(); cursor.next_line()) {
+    const std::string_view keyword = cursor.word();
+    if (keyword == "v") {
+      copy.replace_numbers(cursor, geometry.positions[vertex++]);
+    } else if (keyword == "vn" && normal < geometry.normals.size()) {
+      copy.replace_numbers(cursor, geometry.normals[normal++]);
+    } else if (keyword == "o" || keyword == "g") {
+      cursor.rest_of_line(); // a name may end in a backslash
+    }
+  }
+  return std::move(copy).take();
+}
+
+std::string rewrite_off_text(const Source& source, TextCursor cursor, const Geometry& geometry) {
+  Copy copy(source);
+  for (int count = 0; count < 2; ++count) {
+    cursor.next_word_of_file();
+    cursor.integer();
+  }
+  cursor.skip_blanks();
+  if (!cursor.at_line_end()) {
+    cursor.integer(); // edges
+  }
+  for (const Vec3& position : geometry.positions) {
+    cursor.next_word_of_file();
+    copy.replace_numbers(cursor, position);
+    cursor.next_line();
+  }
+  return std::move(copy).take();
+}
+
+template <class Number>
+void store(std::string& bytes, std::size_t at, double value, std::endian order) {
+  auto stored = std::bit_cast<std::array<char, sizeof(Number)>>(static_cast<Number>(value));
+  if (order != std::endian::native) {
+    std::reverse(stored.begin(), stored.end());
+  }
+  std::copy(stored.begin(), stored.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+void store_floats(std::string& bytes, std::size_t at, const Vec3& values, std::endian order) {
+  for (const double value : values) {
+    store<float>(bytes, at, value, order);
+    at += sizeof(float);
+  }
+}
+
+std::string rewrite_off_binary(const Source& source, std::size_t begin, const OffHeader& header,
+                               const Geometry& geometry) {
+  std::string bytes(source.bytes);
+  std::size_t at = begin + 12;
+  for (const Vec3& position : geometry.positions) {
+    store_floats(bytes, at, position, std::endian::big);
+    at += off_vertex_size(header);
+  }
+  return bytes;
+}
+
+std::string rewrite_off(const Source& source, const Geometry& geometry) {
+  TextCursor cursor(source);
+  cursor.next_word_of_file();
+  const std::optional<OffHeader> header = off_header(cursor.peek_word());
+  if (header) {
+    cursor.word();
+    cursor.skip_blanks();
+    if (cursor.peek_word() == "BINARY") {
+      cursor.next_line();
+      return rewrite_off_binary(source, cursor.offset(), *header, geometry);
+    }
+  }
+  return rewrite_off_text(source, cursor, geometry);
+}
+
+std::string rewrite_stl_binary(const Source& source, const Geometry& geometry) {
+  std::string bytes(source.bytes);
+  const std::span<const Vec3> p = geometry.positions;
+  for (std::size_t v = 0; v < p.size(); v += 3) {
+    const std::size_t facet = 84 + 50 * (v / 3);
+    store_floats(bytes, facet, facet_normal(p[v], p[v + 1], p[v + 2]), std::endian::little);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      store_floats(bytes, facet + 12 * (1 + corner), p[v + corner], std::endian::little);
+    }
+  }
+  return bytes;
+}
+
+bool has_three_numbers(TextCursor cursor) {
+  for (int i = 0; i < 3; ++i) {
+    cursor.skip_blanks();
+    if (!cursor.any_number()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::string rewrite_stl_text(const Source& source, const Geometry& geometry) {
+  Copy copy(source);
+  TextCursor cursor(source);
+  const std::span<const Vec3> p = geometry.positions;
+  std::size_t vertex = 0;
+  while (cursor.next_word_of_file()) {
+    const std::string keyword = stl_keyword(cursor.word());
+    if (keyword == "vertex") {
+      copy.replace_numbers(cursor, p[vertex++]);
+    } else if (keyword == "facet") {
+      cursor.skip_blanks();
+      const bool has_normal = stl_keyword(cursor.peek_word()) == "normal";
+      cursor.word();
+      if (has_normal && vertex + 3 <= p.size() && has_three_numbers(cursor)) {
+        copy.replace_numbers(cursor, facet_normal(p[vertex], p[vertex + 1], p[vertex + 2]));
+      }
+      cursor.next_line();
+    } else if (keyword != "endloop" && keyword != "endfacet") {
+      cursor.next_line();
+    }
+  }
+  return std::move(copy).take();
+}
+
+// Calls use(vertex, axis, type, begin, end) for each of the three coordinates of each vertex.
+template <class Values, class Use>
+void walk_ply_positions(const PlyHeader& header, Values values, Use use) {
+  for (const PlyElement& element : header.elements) {
+    const bool is_vertex = element.name == "vertex";
+    const std::array<std::optional<std::size_t>, 3> axes = {element.find("x"), element.find("y"),
+                                                            element.find("z")};
+    const std::size_t rows = element.properties.empty() ? 0 : element.count;
+    for (std::size_t row = 0; row < rows; ++row) {
+      values.begin_row();
+      for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        double items = 1;
+        if (property.count_type) {
+          items = values.value(*property.count_type).value_or(0);
+        }
+        for (; items > 0; --items) {
+          values.value(property.type);
+        }
+        const auto axis = std::find(axes.begin(), axes.end(), std::optional(i));
+        if (is_vertex && axis != axes.end()) {
+          use(row, static_cast<std::size_t>(axis - axes.begin()), property.type, values.begin(),
+              values.end());
+        }
+      }
+      values.end_row();
+    }
+    if (is_vertex) {
+      return;
+    }
+  }
+}
+
+std::string rewrite_ply_text(const Source& source, const PlyHeader& header,
+                             const Geometry& geometry) {
+  Copy copy(source);
+  walk_ply_positions(
+      header, PlyText(source, header.end),
+      [&](std::size_t vertex, std::size_t axis, PlyType, std::size_t begin, std::size_t end) {
+        copy.replace(begin, end, geometry.positions[vertex][axis]);
+      });
+  return std::move(copy).take();
+}
+
+std::string rewrite_ply_binary(const Source& source, const PlyHeader& header, std::endian order,
+                               const Geometry& geometry) {
+  std::string bytes(source.bytes);
+  walk_ply_positions(
+      header, PlyBinary(source, header.end, order),
+      [&](std::size_t vertex, std::size_t axis, PlyType type, std::size_t begin, std::size_t) {
+        const double value = geometry.positions[vertex][axis];
+        type == PlyType::float32 ? store<float>(bytes, begin, value, order)
+                                 : store<double>(bytes, begin, value, order);
+      });
+  return bytes;
+}
+
+bool is_integer(PlyType type) {
+  return type != PlyType::float32 && type != PlyType::float64;
+}
+
+Result<std::string> rewrite_ply(const Source& source, const Geometry& geometry) {
+  const Result<PlyHeader> header = read_ply_header(source);
+  if (!header) {
+    return header.error();
+  }
+  for (const PlyElement& element : header->elements) {
+    for (const PlyProperty& property : element.properties) {
+      if (element.name == "vertex" && is_integer(property.type) &&
+          (property.name == "x" || property.name == "y" || property.name == "z")) {
+        return source.error("the coordinates are integers and cannot be changed in place; convert "
+                            "the model to OBJ",
+                            ErrorCode::unsupported);
+      }
+    }
+  }
+  if (header->encoding == PlyHeader::Encoding::text) {
+    return rewrite_ply_text(source, *header, geometry);
+  }
+  const bool is_little = header->encoding == PlyHeader::Encoding::little_endian;
+  return rewrite_ply_binary(source, *header, is_little ? std::endian::little : std::endian::big,
+                            geometry);
+}
+
+Result<std::string> rewrite_as(MeshFormat format, const Source& source, const Geometry& geometry) {
+  switch (format) {
+  case MeshFormat::obj:
+    return rewrite_obj(source, geometry);
+  case MeshFormat::off:
+    return rewrite_off(source, geometry);
+  case MeshFormat::ply:
+    return rewrite_ply(source, geometry);
+  case MeshFormat::stl:
+    return is_stl_text(source) ? rewrite_stl_text(source, geometry)
+                               : rewrite_stl_binary(source, geometry);
+  case MeshFormat::gltf:
+    break;
+  }
+  return source.error("glTF cannot be rewritten with other positions; convert the model to OBJ",
+                      ErrorCode::unsupported);
+}
+
+// What the file is, by the rule of read_mesh(), which has accepted it.
+MeshFormat format_of(const Source& source, const std::filesystem::path& path) {
+  return format_of_content(source.bytes).value_or(format_of_name(path).value_or(MeshFormat::obj));
+}
+
+Status check_count(const Source& source, std::string_view noun, std::size_t in_file,
+                   std::size_t given) {
+  if (in_file == given) {
+    return success();
+  }
+  return source.error("has " + counted(in_file, noun) + ", but " + std::to_string(given) +
+                          " are to be written; check that this is the model they were made from",
+                      ErrorCode::mismatch);
+}
+
+bool all_finite(std::span<const Vec3> vectors) {
+  return std::all_of(vectors.begin(), vectors.end(), [](const Vec3& v) { return v.allFinite(); });
+}
+
+Result<FileNormals> normals_in(const Source& source, MeshFormat format) {
+  return format == MeshFormat::obj ? read_obj_normals(source) : FileNormals();
+}
+
+} // namespace
+
+Result<FileNormals> read_normals(const std::filesystem::path& path) {
+  const Result<FileBytes> file = read_file(path);
+  if (!file) {
+    return file.error();
+  }
+  const std::string name = path.string();
+  const Source source{name, file->view()};
+  return normals_in(source, format_of(source, path));
+}
+
+Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
+                         std::span<const Vec3> normals, const std::filesystem::path& out) {
+  const Result<FileBytes> file = read_file(original);
+  if (!file) {
+    return file.error();
+  }
+  const std::string name = original.string();
+  const Source source{name, file->view()};
+  const MeshFormat format = format_of(source, original);
+  if (format == MeshFormat::gltf) { // its positions depend on the scene: there is no place for them
+    return rewrite_as(format, source, {}).error();
+  }
+  const Result<PolygonMesh> mesh = read_mesh(source.bytes, format, name);
+  if (!mesh) {
+    return mesh.error();
+  }
+  const Status vertices = check_count(source, "vertex", mesh->positions.size(), positions.size());
+  if (!vertices) {
+    return vertices;
+  }
+  if (!normals.empty()) {
+    const Result<FileNormals> stored = normals_in(source, format);
+    if (!stored) {
+      return stored.error();
+    }
+    const Status same = check_count(source, "normal", stored->normals.size(), normals.size());
+    if (!same) {
+      return same;
+    }
+  }
+  if (!all_finite(positions) || !all_finite(normals)) {
+    return Error{ErrorCode::cannot_write, one_line(out.string()) +
+                                              ": a position or normal is not finite; check where "
+                                              "it was computed"};
+  }
+  const Result<std::string> bytes = rewrite_as(format, source, {positions, normals});
+  return bytes ? write_file_atomically(out, *bytes) : bytes.error();
+}
+
+} // namespace cagewright

@@ -1,0 +1,46 @@
+/// \file
+/// A model file with other positions, and all else as it was.
+#pragma once
+
+#include "core/result.h"
+#include "mesh/polygon_mesh.h"
+
+#include <filesystem>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cagewright {
+
+/// The normals that a file stores, in its order, and which corner uses which.
+struct FileNormals {
+  static constexpr Index none = std::numeric_limits<Index>::max();
+
+  std::vector<Vec3> normals;    ///< N normals as stored, not made unit; empty if the file has none
+  std::vector<Index> of_corner; ///< for each of PolygonMesh::corners() an index < N, or `none`;
+                                ///< empty if N = 0
+};
+
+/// Reads the normals of an OBJ file (a corner's own, so that hard edges are where two corners of
+/// a vertex differ). For other formats there are none.
+///
+/// Errors: those of read_mesh().
+Result<FileNormals> read_normals(const std::filesystem::path& path);
+
+/// Writes the file `original` again as `out`, with other positions. Every other byte stays: order,
+/// polygons, texture coordinates, groups, materials, comments, colours, elements of others.
+///
+/// OBJ, OFF, STL and PLY. Text gets the shortest digits that read back as the same double; binary
+/// files and the properties of PLY keep their types, and so may round to float. Facet normals of
+/// STL are computed anew.
+///
+/// \param positions  as many as read_mesh() gives for the file, in its order
+/// \param normals    as many as read_normals() gives, or none: then the file's stay
+///
+/// Errors: those of read_mesh(); mismatch (other numbers of positions or normals), unsupported
+/// (glTF, or integer coordinates in PLY), cannot_write (also for a position that is not finite).
+Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
+                         std::span<const Vec3> normals, const std::filesystem::path& out);
+
+} // namespace cagewright
