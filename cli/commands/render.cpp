@@ -23,6 +23,7 @@ struct RenderCommand {
   bool color_by_group = false;
   bool model_as_cage = false;
   bool no_occlusion = false;
+  bool no_shadows = false;
   bool no_faces = false;
   RenderOptions options;
 };
@@ -108,6 +109,7 @@ Result<Image> draw(RenderCommand& command) {
     return renderer.error();
   }
   command.options.ambient_occlusion = !command.no_occlusion;
+  command.options.shadows = !command.no_shadows;
   command.options.cage_faces = !command.no_faces;
   return renderer->render(scene, *views, command.options);
 }
@@ -154,6 +156,7 @@ void add_render(CLI::App& app, Session& session) {
   sub->add_flag("--model-edges", options.model_edges, "Draw the edges of the model's polygons");
   sub->add_flag("--no-cage-faces", command->no_faces, "Draw only the lines and dots of the cage");
   sub->add_flag("--no-ambient-occlusion", command->no_occlusion, "Do not darken folds");
+  sub->add_flag("--no-shadows", command->no_shadows, "Do not draw shadows");
   sub->add_option("--cage-opacity", options.cage_opacity, "Opacity of the cage's faces, 0 to 1");
   sub->add_option("--edge-width", options.edge_width, "Width of the cage's lines in pixels");
   sub->add_option("--vertex-radius", options.vertex_radius,

@@ -21,6 +21,17 @@ using Vec3f = Eigen::Vector3f;
 using Color = std::array<std::uint8_t, 4>; // sRGB and opacity
 
 constexpr float nothing_there = 1e9F; // as a distance from the eye
+constexpr int shadow_size = 2048;     // pixels across the scene, as the light sees it
+
+/// Rows: the main light's right and up, and the direction towards it, in view space. It stands
+/// above the photographer's left shoulder, from whichever side the picture is taken.
+Mat3 light_axes() {
+  Mat3 axes;
+  axes.row(2) = Vec3(-0.50, 0.80, 0.62).normalized();
+  axes.row(0) = Vec3::UnitY().cross(Vec3(axes.row(2))).normalized();
+  axes.row(1) = Vec3(axes.row(2)).cross(Vec3(axes.row(0)));
+  return axes;
+}
 
 struct SolidVertex {
   Vec3f position;
@@ -49,6 +60,7 @@ struct Shapes {
   std::vector<LineInstance> fine_lines; ///< of solids
   std::vector<LineInstance> lines;      ///< of cages
   std::vector<DotInstance> dots;
+  double ground = 0; ///< height at which the solids stand
 };
 
 Color to_color(const Rgb& rgb, double opacity = 1) {
@@ -175,6 +187,9 @@ Shapes shapes_of(const Scene& scene, const Normalization& normalized,
       shapes.points.push_back(mesh.positions[v]);
     }
     if (layer.style == Layer::Style::solid) {
+      const Box3 box = bounding_box(mesh);
+      shapes.ground =
+          std::min(shapes.ground, options.up == UpAxis::y ? box.min().y() : box.min().z());
       add_solid(layer, mesh, cut, options, shapes);
     } else {
       add_cage(layer, mesh, cut, options, shapes);
@@ -315,7 +330,7 @@ Status check_size(const RenderOptions& options) {
 
 struct Renderer::Programs {
   std::unique_ptr<gl::Context> context;
-  gl::Program solid, occlusion, blur, light, resolve, face, face_distance, line, dot;
+  gl::Program solid, shadow, shade, blur, light, resolve, face, face_distance, line, dot;
 
   Programs() = default;
   Programs(const Programs&) = delete;
@@ -323,7 +338,7 @@ struct Renderer::Programs {
   ~Programs() {
     const gl::Context::Use use(*context);
     for (gl::Program* program :
-         {&solid, &occlusion, &blur, &light, &resolve, &face, &face_distance, &line, &dot}) {
+         {&solid, &shadow, &shade, &blur, &light, &resolve, &face, &face_distance, &line, &dot}) {
       *program = gl::Program(); // while the context is current
     }
   }
@@ -334,8 +349,9 @@ namespace {
 /// One picture in the making: the textures that the passes hand to each other.
 class Drawing {
 public:
-  Drawing(const Shapes& shapes, const Camera& camera, const RenderOptions& options)
-      : shapes_(shapes), camera_(camera), options_(options),
+  Drawing(const Shapes& shapes, const gl::Elements& solids, const Camera& camera,
+          const RenderOptions& options)
+      : shapes_(shapes), solids_(solids), camera_(camera), options_(options),
         width_(options.width * options.samples), height_(options.height * options.samples),
         aspect_(static_cast<double>(options.width) / options.height),
         albedo_(gl::make_texture(GL_RGBA8, width_, height_)),
@@ -343,7 +359,8 @@ public:
         distance_(gl::make_texture(GL_R32F, width_, height_)),
         depth_(gl::make_texture(GL_DEPTH_COMPONENT32F, width_, height_)),
         cage_distance_(gl::make_texture(GL_R32F, width_, height_)),
-        occlusion_(gl::make_texture(GL_R16F, options.width, options.height, true)),
+        shadow_map_(gl::make_texture(GL_R32F, shadow_size, shadow_size)),
+        shades_(gl::make_texture(GL_RG16F, options.width, options.height)),
         color_(gl::make_texture(GL_RGBA16F, width_, height_)) {}
 
   void draw_solids(const gl::Program& program) {
@@ -354,27 +371,40 @@ public:
     glClearBufferfv(GL_COLOR, 1, none.data());
     glClearBufferfv(GL_COLOR, 2, far.data());
     glClear(GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
     Inputs inputs(program);
     inputs.set(camera_, aspect_);
-    gl::Elements(shapes_.solids, {{0, 3, GL_FLOAT, offsetof(SolidVertex, position)},
-                                  {1, 3, GL_FLOAT, offsetof(SolidVertex, normal)},
-                                  {2, 4, GL_UNSIGNED_BYTE, offsetof(SolidVertex, color)}})
-        .draw();
-    glDisable(GL_DEPTH_TEST);
+    with_depth_test([&] { solids_.draw(); });
   }
 
-  void find_occlusion(const gl::Program& occlusion, const gl::Program& blur) {
-    begin({occlusion_.id()}, 0, options_.width, options_.height);
-    Inputs inputs(occlusion);
+  /// What stands between the surface and the main light.
+  void draw_shadow_map(const gl::Program& program) {
+    const gl::Texture depth = gl::make_texture(GL_DEPTH_COMPONENT32F, shadow_size, shadow_size);
+    begin({shadow_map_.id()}, depth.id(), shadow_size, shadow_size);
+    constexpr std::array<float, 4> far = {-nothing_there, 0, 0, 0};
+    glClearBufferfv(GL_COLOR, 0, far.data());
+    glClear(GL_DEPTH_BUFFER_BIT);
+    if (options_.shadows) {
+      Inputs inputs(program);
+      inputs.set("light_axes", Mat3(light_axes() * camera_.axes));
+      with_depth_test([&] { solids_.draw(); });
+    }
+  }
+
+  void find_shades(const gl::Program& shade, const gl::Program& blur) {
+    begin({shades_.id()}, 0, options_.width, options_.height);
+    Inputs inputs(shade);
     inputs.set("surface", surface_);
     inputs.set("distance", distance_);
+    inputs.set("shadow_map", shadow_map_);
+    inputs.set("light_from_view", light_axes());
+    inputs.set("eye", camera_.eye);
     inputs.set("slope", camera_.tan_half_height * aspect_, camera_.tan_half_height);
-    inputs.set("reach", 0.22);
+    inputs.set("up", up());
+    inputs.set("ground", shapes_.ground);
     draw_screen();
-    const gl::Texture half_way = gl::make_texture(GL_R16F, options_.width, options_.height);
-    blur_along(blur, occlusion_, half_way, 1.0 / options_.width, 0);
-    blur_along(blur, half_way, occlusion_, 0, 1.0 / options_.height);
+    const gl::Texture half_way = gl::make_texture(GL_RG16F, options_.width, options_.height);
+    blur_along(blur, shades_, half_way, 1.0 / options_.width, 0);
+    blur_along(blur, half_way, shades_, 0, 1.0 / options_.height);
   }
 
   void light(const gl::Program& program) {
@@ -383,11 +413,12 @@ public:
     inputs.set("albedo", albedo_);
     inputs.set("surface", surface_);
     inputs.set("distance", distance_);
-    inputs.set("occlusion", occlusion_);
+    inputs.set("shades", shades_);
     inputs.set("slope", camera_.tan_half_height * aspect_, camera_.tan_half_height);
-    inputs.set("up", Vec3(camera_.axes.col(options_.up == UpAxis::y ? 1 : 2)));
+    inputs.set("up", up());
+    inputs.set("key", Vec3(light_axes().row(2)));
     inputs.set("background", background_colors(options_.background));
-    inputs.set("occlusion_strength", options_.ambient_occlusion ? 1.5 : 0.0);
+    inputs.set("strength", options_.ambient_occlusion ? 1.4 : 0.0, options_.shadows ? 1.0 : 0.0);
     draw_screen();
   }
 
@@ -399,10 +430,8 @@ public:
     constexpr std::array<float, 4> far = {nothing_there, 0, 0, 0};
     glClearBufferfv(GL_COLOR, 0, far.data());
     glClear(GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
     Inputs(distance).set(camera_, aspect_);
-    faces.draw();
-    glDisable(GL_DEPTH_TEST);
+    with_depth_test([&] { faces.draw(); });
 
     begin({color_.id()}, 0, width_, height_);
     Inputs inputs(face);
@@ -474,6 +503,14 @@ private:
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
 
+  [[nodiscard]] Vec3 up() const { return camera_.axes.col(options_.up == UpAxis::y ? 1 : 2); }
+
+  template <class Draw> static void with_depth_test(const Draw& draw) {
+    glEnable(GL_DEPTH_TEST);
+    draw();
+    glDisable(GL_DEPTH_TEST);
+  }
+
   template <class Draw> static void blend(const Draw& draw) {
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -485,7 +522,7 @@ private:
                   double x, double y) {
     begin({to.id()}, 0, options_.width, options_.height);
     Inputs inputs(program);
-    inputs.set("occlusion", from);
+    inputs.set("shades", from);
     inputs.set("distance", distance_);
     inputs.set("step_size", x, y);
     draw_screen();
@@ -502,6 +539,7 @@ private:
   }
 
   const Shapes& shapes_;
+  const gl::Elements& solids_;
   const Camera& camera_;
   const RenderOptions& options_;
   int width_; // in samples
@@ -512,7 +550,8 @@ private:
   gl::Texture distance_;
   gl::Texture depth_;
   gl::Texture cage_distance_;
-  gl::Texture occlusion_;
+  gl::Texture shadow_map_;
+  gl::Texture shades_;
   gl::Texture color_;
   gl::Framebuffer target_;
 };
@@ -561,7 +600,8 @@ Result<Renderer> Renderer::create() {
     std::string vertex, fragment;
   } sources[] = {
       {programs->solid, with_camera + solid_vertex, solid_fragment},
-      {programs->occlusion, screen, occlusion_fragment},
+      {programs->shadow, shadow_vertex, shadow_fragment},
+      {programs->shade, screen, shade_fragment},
       {programs->blur, screen, blur_fragment},
       {programs->light, screen, light_fragment},
       {programs->resolve, screen, resolve_fragment},
@@ -599,11 +639,16 @@ Result<Image> Renderer::render(const Scene& scene, std::span<const View> views,
   }
   const Shapes shapes = shapes_of(scene, *normalization, options);
 
+  const gl::Elements solids(shapes.solids,
+                            {{0, 3, GL_FLOAT, offsetof(SolidVertex, position)},
+                             {1, 3, GL_FLOAT, offsetof(SolidVertex, normal)},
+                             {2, 4, GL_UNSIGNED_BYTE, offsetof(SolidVertex, color)}});
   std::vector<Image> images;
   for (const Camera& camera : cameras_at_one_scale(views, shapes, options)) {
-    Drawing drawing(shapes, camera, options);
+    Drawing drawing(shapes, solids, camera, options);
     drawing.draw_solids(programs_->solid);
-    drawing.find_occlusion(programs_->occlusion, programs_->blur);
+    drawing.draw_shadow_map(programs_->shadow);
+    drawing.find_shades(programs_->shade, programs_->blur);
     drawing.light(programs_->light);
     drawing.draw_lines(programs_->line, shapes.fine_lines, 1.0, {1, 1, 0});
     drawing.draw_cage_faces(programs_->face_distance, programs_->face);

@@ -50,6 +50,7 @@ struct RenderOptions {
   double margin = 0.04;          ///< free at each side, fraction of the picture; in [0, 0.4]
   double crease_degrees = 45;    ///< edges that bend more stay sharp
   bool ambient_occlusion = true; ///< darkens folds and corners
+  bool shadows = true;           ///< of the main light, on the model and the ground
   bool model_edges = false;      ///< the sides of the polygons of solids, as fine lines
   bool cage_faces = true;        ///< else only lines and dots
   double cage_opacity = 0.16;    ///< of faces seen head-on; in [0, 1]

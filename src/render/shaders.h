@@ -66,68 +66,117 @@ void main() {
 }
 )";
 
-/// How much of the sky each point sees, judged from the depths round it in the picture.
-inline constexpr const char* occlusion_fragment = R"(
-in vec2 uv;
-uniform sampler2D surface;
-uniform sampler2D distance;
-uniform vec2 slope;
-uniform float reach;
-out float open;
-
-const int COUNT = 28;
-const float GOLDEN = 2.39996323;
-
-vec3 view_position(vec2 at, float depth) { return vec3((at * 2 - 1) * slope, -1) * depth; }
-
+/// Only how far the surface reaches towards the main light, seen from there.
+inline constexpr const char* shadow_vertex = R"(
+layout(location = 0) in vec3 position;
+uniform mat3 light_axes; // rows: right and up as the light sees it, towards the light
+out float height;
 void main() {
-  float depth = texture(distance, uv).r;
-  if (depth > 1e8) {
-    open = 1;
-    return;
-  }
-  vec3 p = view_position(uv, depth);
-  vec3 n = texture(surface, uv).xyz;
-  vec3 side = normalize(cross(n, abs(n.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0)));
-  vec3 other = cross(n, side);
-
-  // A spiral over the hemisphere, turned from pixel to pixel (interleaved gradient noise).
-  float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-  float blocked = 0;
-  for (int i = 0; i < COUNT; ++i) {
-    float t = (float(i) + 0.5) / COUNT;
-    float angle = turn + GOLDEN * float(i);
-    float sine = sqrt(t);
-    float length = reach * mix(0.06, 1.0, fract(float(i) * 0.7548777 + 0.3) * t + 0.0);
-    vec3 q = p + length * (sine * (cos(angle) * side + sin(angle) * other) + sqrt(1 - t) * n);
-    vec2 at = q.xy / (-q.z * slope) * 0.5 + 0.5;
-    float seen = texture(distance, at).r;
-    float before = -q.z - seen; // how far what is seen there stands before the sample
-    if (before > 0.004) {
-      blocked += clamp(1.6 - before / reach, 0.0, 1.0);
-    }
-  }
-  open = 1 - blocked / COUNT;
+  vec3 p = light_axes * position;
+  height = p.z;
+  gl_Position = vec4(p.xy, -p.z, 1);
 }
 )";
 
-/// Averages the occlusion along one axis over pixels of about the same depth.
-inline constexpr const char* blur_fragment = R"(
+inline constexpr const char* shadow_fragment = R"(
+in float height;
+out float nearest;
+void main() { nearest = height; }
+)";
+
+/// How much of the sky each point sees, judged from the depths round it in the picture, and how
+/// much of the main light. Where there is no surface, the same light for the ground.
+inline constexpr const char* shade_fragment = R"(
 in vec2 uv;
-uniform sampler2D occlusion;
+uniform sampler2D surface;
 uniform sampler2D distance;
-uniform vec2 step_size;
-out float open;
+uniform sampler2D shadow_map;
+uniform mat3 light_from_view;
+uniform vec3 eye;
+uniform vec2 slope;
+uniform vec3 up;
+uniform float ground; // height of the ground
+out vec2 shade;       // share of the sky, share of the light
+
+const int SKY_RAYS = 24;
+const int LIGHT_RAYS = 20;
+const float GOLDEN = 2.39996323;
+const float REACH = 0.24;
+
+vec3 view_position(vec2 at, float depth) { return vec3((at * 2 - 1) * slope, -1) * depth; }
+
+// Turns the patterns of rays from pixel to pixel (interleaved gradient noise).
+float turn() {
+  return 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+}
+
+float open_sky(vec3 p, vec3 n) {
+  vec3 side = normalize(cross(n, abs(n.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0)));
+  vec3 other = cross(n, side);
+  float first = turn();
+  float blocked = 0;
+  for (int i = 0; i < SKY_RAYS; ++i) {
+    float t = (float(i) + 0.5) / SKY_RAYS;
+    float angle = first + GOLDEN * float(i);
+    float reach = REACH * mix(0.06, 1.0, t * fract(float(i) * 0.7548777 + 0.3));
+    vec3 q = p + reach * (sqrt(t) * (cos(angle) * side + sin(angle) * other) + sqrt(1 - t) * n);
+    float seen = texture(distance, q.xy / (-q.z * slope) * 0.5 + 0.5).r;
+    float before = -q.z - seen; // how far what is seen there stands before the end of the ray
+    if (before > 0.004) {
+      blocked += clamp(1.6 - before / REACH, 0.0, 1.0);
+    }
+  }
+  return 1 - blocked / SKY_RAYS;
+}
+
+float light_at(vec3 p, float spread, float tolerance) {
+  vec3 q = light_from_view * (p + eye);
+  float first = turn();
+  float reached = 0;
+  for (int i = 0; i < LIGHT_RAYS; ++i) {
+    float angle = first + GOLDEN * float(i);
+    float r = spread * sqrt((float(i) + 0.5) / LIGHT_RAYS);
+    vec2 at = q.xy + r * vec2(cos(angle), sin(angle));
+    reached += texture(shadow_map, at * 0.5 + 0.5).r > q.z + tolerance ? 0.0 : 1.0;
+  }
+  return reached / LIGHT_RAYS;
+}
+
 void main() {
   float depth = texture(distance, uv).r;
-  float sum = 0, weights = 0;
+  if (depth < 1e8) {
+    vec3 p = view_position(uv, depth);
+    vec3 n = texture(surface, uv).xyz;
+    shade = vec2(open_sky(p, n), light_at(p + 0.012 * n, 0.022, 0.02));
+    return;
+  }
+  shade = vec2(1);
+  vec3 ray = view_position(uv, 1);
+  float along = (ground - dot(up, eye)) / dot(up, ray);
+  if (dot(up, ray) < 0 && along > 0) {
+    shade.y = light_at(ray * along, 0.11, 0.01);
+  }
+}
+)";
+
+/// Averages the shades along one axis over pixels of about the same depth.
+inline constexpr const char* blur_fragment = R"(
+in vec2 uv;
+uniform sampler2D shades;
+uniform sampler2D distance;
+uniform vec2 step_size;
+out vec2 shade;
+void main() {
+  float depth = texture(distance, uv).r;
+  vec2 sum = vec2(0);
+  float weights = 0;
   for (int i = -4; i <= 4; ++i) {
     vec2 at = uv + float(i) * step_size;
     float w = exp(-0.09 * float(i * i)) * max(0.0, 1 - abs(texture(distance, at).r - depth) * 25);
-    sum += w * texture(occlusion, at).r;
+    sum += w * texture(shades, at).rg;
     weights += w;
   }
-  open = weights > 0 ? sum / weights : 1;
+  shade = sum / weights;
 }
 )";
 
@@ -137,43 +186,63 @@ in vec2 uv;
 uniform sampler2D albedo;
 uniform sampler2D surface;
 uniform sampler2D distance;
-uniform sampler2D occlusion;
+uniform sampler2D shades;
 uniform vec2 slope;
 uniform vec3 up;            // of the model, in view space
+uniform vec3 key;           // towards the main light
 uniform vec4 background[2]; // at the bottom and at the top
-uniform float occlusion_strength;
+uniform vec2 strength;      // of the shades
 out vec4 color;
 
 vec3 to_linear(vec3 c) {
   return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c));
 }
 
-vec3 lit(vec3 base, vec3 n, vec3 to_eye, float open) {
-  const vec3 key = normalize(vec3(-0.55, 0.75, 0.62));
+// The shades have a pixel where the picture has several samples: takes them from those of the four
+// nearest pixels that are about as far away, so that none leaks over an outline.
+vec2 shade_at(float depth) {
+  vec2 size = vec2(textureSize(shades, 0));
+  vec2 corner = floor(uv * size - 0.5);
+  vec2 part = uv * size - 0.5 - corner;
+  vec2 sum = vec2(0);
+  float weights = 0;
+  for (int i = 0; i < 4; ++i) {
+    vec2 offset = vec2(i & 1, i >> 1);
+    vec2 at = (corner + offset + 0.5) / size;
+    vec2 w = mix(1 - part, part, offset);
+    float weight = (w.x * w.y + 1e-3) / (1e-3 + abs(texture(distance, at).r - depth));
+    sum += weight * texture(shades, at).rg;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+vec3 lit(vec3 base, vec3 n, vec3 to_eye, float open, float reached) {
   const vec3 fill = normalize(vec3(0.85, 0.10, 0.50));
   const vec3 rim = normalize(vec3(0.35, 0.55, -0.80));
-  vec3 sky = mix(vec3(0.30, 0.27, 0.25), vec3(0.62, 0.67, 0.74), 0.5 + 0.5 * dot(n, up));
-  float shade = mix(1.0, open, 0.45);
-  vec3 light = sky * open * 0.62;
-  light += vec3(1.00, 0.94, 0.86) * 0.80 * shade * max(0.0, (dot(n, key) + 0.15) / 1.15);
-  light += vec3(0.60, 0.72, 0.90) * 0.20 * shade * max(0.0, (dot(n, fill) + 0.25) / 1.25);
-  light += vec3(0.90, 0.95, 1.00) * 0.30 * open * pow(max(0.0, dot(n, rim)), 1.5);
+  float half_open = mix(1.0, open, 0.5);
+  vec3 light = open * 0.50 * mix(vec3(0.36, 0.31, 0.28), vec3(0.66, 0.74, 0.86), 0.5 + 0.5 * dot(n, up));
+  light += reached * half_open * vec3(1.08, 1.00, 0.90) * max(0.0, (dot(n, key) + 0.10) / 1.10);
+  light += half_open * vec3(0.12, 0.15, 0.20) * max(0.0, (dot(n, fill) + 0.25) / 1.25);
+  light += open * vec3(0.30, 0.32, 0.34) * pow(max(0.0, dot(n, rim)), 1.5);
   float gloss = pow(max(0.0, dot(n, normalize(key + to_eye))), 28.0);
-  float edge = pow(1 - max(0.0, dot(n, to_eye)), 4.0);
-  return base * light + shade * (0.07 * gloss + 0.05 * edge * max(0.0, dot(n, up) * 0.5 + 0.5));
+  float edge = pow(1 - max(0.0, dot(n, to_eye)), 4.0) * max(0.0, 0.5 + 0.5 * dot(n, up));
+  return base * light + half_open * (0.06 * reached * gloss + 0.05 * edge);
 }
 
 void main() {
-  vec4 behind = mix(background[0], background[1], smoothstep(0.0, 1.0, uv.y));
+  float depth = texture(distance, uv).r;
+  vec2 shade = shade_at(depth);
   vec4 base = texture(albedo, uv);
   if (base.a == 0) {
-    color = behind;
+    vec4 behind = mix(background[0], background[1], smoothstep(0.0, 1.0, uv.y));
+    float dark = 0.30 * (1 - shade.y) * strength.y;
+    color = vec4(behind.rgb * (1 - dark), mix(behind.a, 1.0, dark));
     return;
   }
-  float depth = texture(distance, uv).r;
   vec3 p = vec3((uv * 2 - 1) * slope, -1) * depth;
-  float open = pow(texture(occlusion, uv).r, occlusion_strength);
-  color = vec4(lit(to_linear(base.rgb), texture(surface, uv).xyz, normalize(-p), open), 1);
+  color = vec4(lit(to_linear(base.rgb), texture(surface, uv).xyz, normalize(-p),
+                   pow(shade.x, strength.x), mix(1.0, shade.y, 0.8 * strength.y)), 1);
 }
 )";
 

@@ -80,6 +80,7 @@ std::optional<Renderer> Rendering::renderer;
 TEST_F(Rendering, ShowsTheModelInTheMiddleAndTheBackgroundAround) {
   RenderOptions options = small();
   options.background = Background::white;
+  options.shadows = false;
   const Image image = draw({{Layer::model(sphere)}}, options);
   EXPECT_TRUE(is_warm(image.at(size / 2, size / 2)));
   for (const int x : {0, size - 1}) {
@@ -109,6 +110,28 @@ TEST_F(Rendering, FillsTheFrame) {
 TEST_F(Rendering, LightsFromAbove) {
   const Image image = draw({{Layer::model(sphere)}});
   EXPECT_GT(image.at(size / 2, size / 5)[1], image.at(size / 2, 4 * size / 5)[1] + 30);
+}
+
+TEST_F(Rendering, CastsShadows) {
+  // A small ball between the light and a large one, drawn from the front.
+  PolygonMesh balls(joined(make_icosphere(3), make_icosphere(3)));
+  const std::size_t half = balls.positions.size() / 2;
+  for (std::size_t v = 0; v < half; ++v) {
+    balls.positions[v] = 0.3 * balls.positions[v] + Vec3(-0.8, 1.2, 1.0);
+  }
+  RenderOptions options = small();
+  options.background = Background::transparent;
+  const Image shaded = draw({{Layer::model(balls)}}, options);
+  options.shadows = false;
+  const Image bare = draw({{Layer::model(balls)}}, options);
+  int darker = 0;
+  int on_the_ground = 0;
+  for (std::size_t i = 0; i < bare.pixels.size(); ++i) {
+    darker += bare.pixels[i][3] == 255 && shaded.pixels[i][0] + 20 < bare.pixels[i][0] ? 1 : 0;
+    on_the_ground += bare.pixels[i][3] == 0 && shaded.pixels[i][3] > 20 ? 1 : 0;
+  }
+  EXPECT_GT(darker, 50);
+  EXPECT_GT(on_the_ground, 50);
 }
 
 TEST_F(Rendering, DrawsTheCagesEdgesWhereTheyProject) {
