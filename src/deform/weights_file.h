@@ -1,0 +1,63 @@
+/// \file
+/// Weights in a file, so that a model is bound once.
+#pragma once
+
+#include "coordinates/mean_value.h"
+#include "coordinates/weights.h"
+#include "core/progress.h"
+#include "core/result.h"
+#include "mesh/polygon_mesh.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace cagewright {
+
+/// Weights as read from a file, with what is needed to tell whether they are the right ones.
+struct StoredWeights {
+  FloatWeights weights;             ///< P x C
+  PolygonMesh cage;                 ///< at rest: C vertices
+  std::string kind;                 ///< of coordinates: "mean_value"
+  std::uint64_t model_checksum = 0; ///< checksum() of the model's P positions
+};
+
+/// A number that changes when a coordinate, the order or the count of the points does.
+std::uint64_t checksum(std::span<const Vec3> points);
+
+struct BoundCounts {
+  std::size_t on_surface = 0; ///< points that lie on the cage
+  std::size_t undefined = 0;  ///< points without weights: rows of zeros
+};
+
+/// Binds points to a cage and writes the weights, a few thousand rows at a time: the matrix never
+/// stands in memory.
+///
+/// The file is NumPy's: numpy.load(path) gives weights (P x C floats), cage_positions (C x 3
+/// doubles), cage_faces (F x K integers, -1 after the last corner), kind, version and
+/// model_checksum. Positions of the model are weights @ cage_positions. It appears under its name
+/// only when complete, and the same input gives the same bytes.
+///
+/// \param cage  the cage that the solver was made of
+/// Errors: cannot_write, cancelled.
+Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const Vec3> points,
+                                 const PolygonMesh& cage, const std::filesystem::path& path,
+                                 const Progress& progress = {});
+
+/// Reads such a file; also one that was compressed by numpy.savez_compressed.
+/// Errors: cannot_open, malformed (foreign, cut off or damaged), unsupported (of a later version
+/// or another kind), too_large.
+Result<StoredWeights> read_weights(const std::filesystem::path& path);
+
+/// Whether the weights were made for these points and this cage, exactly.
+/// Errors: mismatch, with what differs.
+Status belongs_to(const StoredWeights& stored, std::span<const Vec3> points,
+                  const PolygonMesh& cage);
+
+/// Whether two cages have the same vertices and faces, apart from where the vertices are.
+/// \param what  "the deformed cage", for the message
+/// Errors: mismatch: "the deformed cage has 98 vertices, the cage at rest 100".
+Status same_topology(const PolygonMesh& rest, const PolygonMesh& other, const std::string& what);
+
+} // namespace cagewright
