@@ -24,6 +24,27 @@ bool pierces(const Vec3& p, const Vec3& q, const Vec3 (&t)[3], Vec3& at) {
          (t[0] - t[2]).cross(at - t[2]).dot(normal) >= 0;
 }
 
+/// For a triangle that is nearly or wholly a segment, where the regions of corners, edges and face
+/// cannot be told apart by products of projections: the best of all candidates.
+Vec3 nearest_on_sliver(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  Vec3 best = nearest_on_segment(p, a, b);
+  const auto offer = [&](const Vec3& x) {
+    if ((p - x).squaredNorm() < (p - best).squaredNorm()) {
+      best = x;
+    }
+  };
+  offer(nearest_on_segment(p, b, c));
+  offer(nearest_on_segment(p, c, a));
+  const Vec3 normal = (b - a).cross(c - a);
+  const double at_b = (p - a).cross(c - a).dot(normal);
+  const double at_c = (b - a).cross(p - a).dot(normal);
+  const double whole = normal.squaredNorm();
+  if (at_b > 0 && at_c > 0 && at_b + at_c < whole) {
+    offer(a + (at_b / whole) * (b - a) + (at_c / whole) * (c - a));
+  }
+  return best;
+}
+
 } // namespace
 
 Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -37,6 +58,12 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   const Vec3 ap = p - a;
   const double d1 = ab.dot(ap);
   const double d2 = ac.dot(ap);
+  // Below an angle of a hundredth at a the error of the products exceeds some 1e-12.
+  const double ab_ac = ab.dot(ac);
+  const double both = ab.squaredNorm() * ac.squaredNorm();
+  if (both - ab_ac * ab_ac <= 1e-4 * both) {
+    return nearest_on_sliver(p, a, b, c);
+  }
   if (d1 <= 0 && d2 <= 0) {
     return a;
   }
