@@ -161,6 +161,8 @@ void add_render(CLI::App& app, Session& session) {
   sub->add_option("--edge-width", options.edge_width, "Width of the cage's lines in pixels");
   sub->add_option("--vertex-radius", options.vertex_radius,
                   "Radius of the cage's dots in pixels; 0 for none");
+  sub->add_option("--least-bend-degrees", options.least_bend_degrees,
+                  "Leave out lines of the cage where its faces bend less");
   sub->add_option("--crease-degrees", options.crease_degrees,
                   "Edges of the model that bend more are drawn sharp");
   sub->add_option("--angle-degrees", options.angle_degrees, "Height of the angle of view");

@@ -166,11 +166,12 @@ void add_cage(const Layer& layer, const TriangleMesh& mesh, const Triangulation&
   }
   const std::vector<std::size_t> face_of = faces_of_vertices(*layer.mesh);
   const auto line_color = [&](Index v) { return to_color(darker(face_color(face_of[v]), 0.62F)); };
-  for (const auto& [a, b] : polygon_edges(*layer.mesh)) {
+  const auto edges = polygon_edges(*layer.mesh, options.least_bend_degrees);
+  for (const auto& [a, b] : edges) {
     shapes.lines.push_back(
         {mesh.positions[a].cast<float>(), mesh.positions[b].cast<float>(), line_color(a)});
   }
-  for (const Index v : used_points(*layer.mesh)) {
+  for (const Index v : end_points(edges)) {
     shapes.dots.push_back({mesh.positions[v].cast<float>(), line_color(v)});
   }
 }

@@ -56,6 +56,7 @@ struct RenderOptions {
   double cage_opacity = 0.16;    ///< of faces seen head-on; in [0, 1]
   double edge_width = 2.2;       ///< of the cage's lines, pixels
   double vertex_radius = 3.4;    ///< of the cage's dots, pixels; 0: no dots
+  double least_bend_degrees = 0; ///< sides of the cage that bend less are not drawn
   int samples = 3;               ///< each pixel is the mean of samples * samples; in [1, 4]
 };
 

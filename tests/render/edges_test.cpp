@@ -50,6 +50,17 @@ TEST(PolygonEdges, LeaveOutSidesWithoutLength) {
   EXPECT_EQ(polygon_edges(mesh).size(), 3);
 }
 
+TEST(PolygonEdges, CanLeaveOutTheFlatOnes) {
+  const auto bent = polygon_edges(PolygonMesh(make_cube()), 1);
+  EXPECT_EQ(bent.size(), 12);
+  EXPECT_EQ(end_points(bent).size(), 8);
+  PolygonMesh open; // its border stays
+  open.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+  open.add_face({0, 1, 2});
+  open.add_face({0, 2, 3});
+  EXPECT_EQ(polygon_edges(open, 1).size(), 4);
+}
+
 TEST(UsedPoints, LeaveOutStrays) {
   PolygonMesh cube = quad_cube();
   cube.positions.emplace_back(50, 50, 50);
