@@ -1,6 +1,7 @@
 #include "slicing/box_tree.h"
 
 #include "core/parallel.h"
+#include "slicing/lookahead.h"
 #include "slicing/tight_box.h"
 #include "slicing/volume_rule.h"
 
@@ -15,6 +16,10 @@ namespace {
 constexpr int least_margin = 3;
 /// ... nor less than this part of its length: a sliver box helps nobody.
 constexpr double margin_fraction = 0.05;
+
+/// A cut that saves less than this fraction of the box's volume may miss the one that opens a hole
+/// or a bend only together with the next: then it pays to look ahead.
+constexpr double clear_gain = 0.05;
 
 /// What a cut would make of a box.
 struct Candidate {
@@ -115,20 +120,56 @@ private:
         volume_cuts(grid_, owners_, static_cast<std::uint32_t>(at), node.voxels, node.box,
                     {.split_parts = options_.split_parts, .margin = margin_of(node),
                      .padding = padding()});
-    std::vector<std::optional<Candidate>> tried(planes.size());
-    parallel_for(0, planes.size(), 1, [&](std::size_t p) { tried[p] = carve(at, planes[p]); });
-    std::optional<Candidate> best;
-    for (std::optional<Candidate>& candidate : tried) {
-      if (candidate && (!best || candidate->volume < best->volume)) {
-        best = std::move(candidate);
-      }
+    const std::vector<double> at_once(planes.size(), 1.0);
+    std::optional<Prospect> best = most_promising(at, planes, at_once);
+    if (node.depth + 1 < options_.depth && (!best || best->gain < clear_gain)) {
+      best = look_ahead(at, planes);
     }
     stop = !best ? StopReason::too_small : StopReason::cut;
-    if (best && best->cut.gain < options_.min_gain) {
+    if (best && best->gain < options_.min_gain) {
       stop = StopReason::no_gain;
       return std::nullopt;
     }
+    return best ? std::optional<Candidate>(std::move(best->candidate)) : std::nullopt;
+  }
+
+  struct Prospect {
+    Candidate candidate;
+    double gain = 0; ///< volume saved by this cut, or by this and the next: a fraction of the box's
+  };
+
+  /// Of the planes that cut something off, the one that leaves the least volume.
+  /// \param share_left for each plane, what later cuts leave of the volume of its parts' boxes
+  [[nodiscard]] std::optional<Prospect> most_promising(std::size_t at,
+                                                       const std::vector<CutPlane>& planes,
+                                                       const std::vector<double>& share_left) const {
+    std::vector<std::optional<Candidate>> tried(planes.size());
+    parallel_for(0, planes.size(), 1, [&](std::size_t p) { tried[p] = carve(at, planes[p]); });
+    std::optional<Prospect> best;
+    for (std::size_t p = 0; p < tried.size(); ++p) {
+      if (!tried[p]) {
+        continue;
+      }
+      const double gain = 1 - share_left[p] * tried[p]->volume / tree_.nodes[at].box.volume();
+      if (!best || gain > best->gain) {
+        best = Prospect{std::move(*tried[p]), gain};
+      }
+    }
     return best;
+  }
+
+  /// The best of these and of evenly spaced planes, judged by what the cut after the next leaves.
+  [[nodiscard]] std::optional<Prospect> look_ahead(std::size_t at,
+                                                   std::vector<CutPlane> planes) const {
+    const BoxNode& node = tree_.nodes[at];
+    const Lookahead lookahead(grid_, node.voxels, node.box, options_.split_parts, padding());
+    for (const CutPlane& plane : lookahead.evenly_spaced_planes(margin_of(node) * grid_.size)) {
+      planes.push_back(plane);
+    }
+    std::vector<double> share_left(planes.size());
+    parallel_for(0, planes.size(), 1,
+                 [&](std::size_t p) { share_left[p] = lookahead.share_left(planes[p]); });
+    return most_promising(at, planes, share_left);
   }
 
   std::optional<Candidate> best_by_jump(std::size_t at, StopReason& stop) const {

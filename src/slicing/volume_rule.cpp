@@ -21,10 +21,23 @@ struct Sweep {
   const VoxelOwners& owners;
   std::uint32_t part;
   std::span<const std::uint32_t> voxels;
-  std::span<const Vec3> centers; // of the voxels, in the frame of the box
+  std::vector<Vec3> centers; // of the voxels, in the frame of the box
   std::array<std::ptrdiff_t, 26> steps;
   Vec3 extent_of_one; // of the padded box of a single voxel, along the axes of the box
   bool split_parts;
+
+  Sweep(const VoxelGrid& of_grid, const VoxelOwners& of_owners, std::uint32_t of_part,
+        std::span<const std::uint32_t> of_voxels, const OrientedBox& box,
+        const VolumeRuleOptions& options)
+      : grid(of_grid), owners(of_owners), part(of_part), voxels(of_voxels),
+        steps(neighbor_steps(of_grid)), split_parts(options.split_parts) {
+    extent_of_one = ((box.axes.transpose() * grid.axes).cwiseAbs() * Vec3::Constant(grid.size))
+                        .array() + 2 * options.padding;
+    centers.reserve(voxels.size());
+    for (const std::uint32_t v : voxels) {
+      centers.push_back(box.to_local(grid.center(v)));
+    }
+  }
 };
 
 /// The slices of the voxels along one axis. Slice boundaries lie half-way between voxel centers
@@ -143,26 +156,36 @@ std::vector<double> volumes(const Sweep& sweep, const Slices& slices, bool backw
   return volumes;
 }
 
-struct Scored {
-  CutPlane plane;
-  double cost;
-};
-
-void append_best(const Sweep& sweep, int axis, const VolumeRuleOptions& options,
-                 std::vector<Scored>& out) {
-  const Slices slices(sweep, axis);
-  const auto count = static_cast<std::ptrdiff_t>(slices.count());
-  if (count < 2 * options.margin) {
-    return;
-  }
+/// Total volume after each cut along an axis: entry k is for the cut between slices k and k + 1.
+std::vector<double> cut_costs(const Sweep& sweep, const Slices& slices) {
   const std::vector<double> below = volumes(sweep, slices, false);
   const std::vector<double> above = volumes(sweep, slices, true);
+  std::vector<double> costs(slices.count() - 1);
+  for (std::size_t k = 0; k < costs.size(); ++k) {
+    costs[k] = below[k] + above[k + 1];
+  }
+  return costs;
+}
+
+/// The range of cuts that leave the margin on both sides; empty when begin >= end.
+std::pair<std::ptrdiff_t, std::ptrdiff_t> allowed_cuts(const Slices& slices, int margin) {
+  return {margin - 1, static_cast<std::ptrdiff_t>(slices.count()) - margin};
+}
+
+void append_best(const Sweep& sweep, int axis, const VolumeRuleOptions& options,
+                 std::vector<CutPlane>& out) {
+  const Slices slices(sweep, axis);
+  const auto [begin, end] = allowed_cuts(slices, options.margin);
+  if (begin >= end) {
+    return;
+  }
+  const std::vector<double> costs = cut_costs(sweep, slices);
   std::vector<std::ptrdiff_t> chosen;
   for (int n = 0; n < options.per_axis; ++n) {
     std::ptrdiff_t best = -1;
     double best_cost = 0;
-    for (std::ptrdiff_t k = options.margin - 1; k + 1 + options.margin <= count; ++k) {
-      const double cost = below[static_cast<std::size_t>(k)] + above[static_cast<std::size_t>(k) + 1];
+    for (std::ptrdiff_t k = begin; k < end; ++k) {
+      const double cost = costs[static_cast<std::size_t>(k)];
       const bool free = std::none_of(chosen.begin(), chosen.end(), [&](std::ptrdiff_t c) {
         return std::abs(c - k) < apart;
       });
@@ -175,8 +198,7 @@ void append_best(const Sweep& sweep, int axis, const VolumeRuleOptions& options,
       return;
     }
     chosen.push_back(best);
-    const double offset = slices.begin + static_cast<double>(best + 1) * sweep.grid.size;
-    out.push_back({{axis, offset}, best_cost});
+    out.push_back({axis, slices.begin + static_cast<double>(best + 1) * sweep.grid.size});
   }
 }
 
@@ -185,27 +207,38 @@ void append_best(const Sweep& sweep, int axis, const VolumeRuleOptions& options,
 std::vector<CutPlane> volume_cuts(const VoxelGrid& grid, const VoxelOwners& owners,
                                   std::uint32_t part, std::span<const std::uint32_t> voxels,
                                   const OrientedBox& box, const VolumeRuleOptions& options) {
-  std::vector<Vec3> centers;
-  centers.reserve(voxels.size());
-  for (const std::uint32_t v : voxels) {
-    centers.push_back(box.to_local(grid.center(v)));
-  }
-  const Vec3 extent_of_one =
-      ((box.axes.transpose() * grid.axes).cwiseAbs() * Vec3::Constant(grid.size)).array() +
-      2 * options.padding;
-  const Sweep sweep{grid, owners, part, voxels, centers, neighbor_steps(grid), extent_of_one,
-                    options.split_parts};
-  std::array<std::vector<Scored>, 3> by_axis;
+  const Sweep sweep(grid, owners, part, voxels, box, options);
+  std::array<std::vector<CutPlane>, 3> by_axis;
   parallel_for(0, 3, 1, [&](std::size_t axis) {
     append_best(sweep, static_cast<int>(axis), options, by_axis[axis]);
   });
   std::vector<CutPlane> planes;
-  for (const std::vector<Scored>& scored : by_axis) {
-    for (const Scored& s : scored) {
-      planes.push_back(s.plane);
-    }
+  for (const std::vector<CutPlane>& along : by_axis) {
+    planes.insert(planes.end(), along.begin(), along.end());
   }
   return planes;
+}
+
+CutVolumes least_volumes(const VoxelGrid& grid, const VoxelOwners& owners, std::uint32_t part,
+                         std::span<const std::uint32_t> voxels, const OrientedBox& box,
+                         const VolumeRuleOptions& options) {
+  const Sweep sweep(grid, owners, part, voxels, box, options);
+  Box3 extent;
+  for (const Vec3& c : sweep.centers) {
+    extent.extend(c);
+  }
+  CutVolumes least;
+  least.uncut = (extent.sizes() + sweep.extent_of_one).prod();
+  least.cut = least.uncut;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Slices slices(sweep, axis);
+    const auto [begin, end] = allowed_cuts(slices, options.margin);
+    if (begin < end) {
+      const std::vector<double> costs = cut_costs(sweep, slices);
+      least.cut = std::min(least.cut, *std::min_element(costs.begin() + begin, costs.begin() + end));
+    }
+  }
+  return least;
 }
 
 } // namespace cagewright

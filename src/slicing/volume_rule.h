@@ -34,4 +34,15 @@ std::vector<CutPlane> volume_cuts(const VoxelGrid& grid, const VoxelOwners& owne
                                   std::uint32_t part, std::span<const std::uint32_t> voxels,
                                   const OrientedBox& box, const VolumeRuleOptions& options = {});
 
+/// What the best cut of a part can reach, in boxes aligned with `box`.
+struct CutVolumes {
+  double uncut = 0; ///< volume of the part's own box
+  double cut = 0;   ///< least total volume after one cut; that of the uncut box when none is less
+};
+
+/// Cost: as volume_cuts(); runs on one thread.
+CutVolumes least_volumes(const VoxelGrid& grid, const VoxelOwners& owners, std::uint32_t part,
+                         std::span<const std::uint32_t> voxels, const OrientedBox& box,
+                         const VolumeRuleOptions& options = {});
+
 } // namespace cagewright

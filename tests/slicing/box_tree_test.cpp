@@ -7,7 +7,8 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <set>
+#include <cmath>
+#include <string>
 
 namespace cagewright {
 namespace {
@@ -138,6 +139,18 @@ TEST(BoxTreeByVolume, CutsTheElbowAtItsCorner) {
   ASSERT_EQ(tree.cover(1).size(), 2U);
   EXPECT_LT(total_volume(tree, 1), 1.2 * 52 * 8 * 8);
   EXPECT_GT(tree.nodes[0].cut->gain, 0.3);
+}
+
+TEST(BoxTreeByVolume, OpensARingThatNoSingleCutGainsFrom) {
+  const VoxelGrid ring = grid_where({64, 64, 12}, [](const Vec3& p) {
+    const double r = std::hypot(p.x() - 32, p.y() - 32);
+    return std::hypot(r - 26, p.z() - 6) < 6;
+  });
+  const BoxTree tree = tree_of(ring, {.depth = 4});
+  EXPECT_LT(total_volume(tree, 4), 0.75 * total_volume(tree, 0));
+  for (const int at : tree.cover(4)) {
+    EXPECT_FALSE(tree.nodes[static_cast<std::size_t>(at)].box.contains({32, 32, 6}));
+  }
 }
 
 TEST(BoxTreeByVolume, NeverMakesTheBoxesLarger) {

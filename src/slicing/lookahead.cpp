@@ -1,0 +1,87 @@
+#include "slicing/lookahead.h"
+
+#include "slicing/volume_rule.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cagewright {
+namespace {
+
+/// The copy has about as many voxels as this: enough to tell limbs apart.
+constexpr double coarse_voxels = 800;
+constexpr int coarsest = 6;
+
+/// Where along an axis a plane is tried, as fractions of its half-length.
+constexpr std::array<double, 5> stations = {-0.5, -0.25, 0.0, 0.25, 0.5};
+
+/// Cells of `factor` voxels a side, with an empty layer around those that hold any.
+VoxelGrid coarser(const VoxelGrid& grid, int factor) {
+  VoxelGrid coarse;
+  coarse.axes = grid.axes;
+  coarse.size = grid.size * factor;
+  coarse.origin = grid.to_world(Vec3::Constant(-factor));
+  for (std::size_t a = 0; a < 3; ++a) {
+    coarse.dims[a] = (grid.dims[a] + factor - 1) / factor + 2;
+  }
+  coarse.kinds.assign(coarse.index(0, 0, coarse.dims[2]), VoxelKind::outer);
+  return coarse;
+}
+
+} // namespace
+
+Lookahead::Lookahead(const VoxelGrid& grid, std::span<const std::uint32_t> voxels,
+                     const OrientedBox& box, bool split_parts, double padding)
+    : box_(box), split_parts_(split_parts), padding_(padding) {
+  const double ratio = static_cast<double>(voxels.size()) / coarse_voxels;
+  const int factor = std::clamp(static_cast<int>(std::lround(std::cbrt(ratio))), 1, coarsest);
+  coarse_ = coarser(grid, factor);
+  for (const std::uint32_t v : voxels) {
+    const std::array<int, 3> c = grid.cell(v);
+    coarse_.kinds[coarse_.index(c[0] / factor + 1, c[1] / factor + 1, c[2] / factor + 1)] =
+        VoxelKind::inner;
+  }
+  for (std::uint32_t v = 0; v < coarse_.kinds.size(); ++v) {
+    if (coarse_.occupied(v)) {
+      voxels_.push_back(v);
+    }
+  }
+  owners_ = {std::vector<std::uint32_t>(coarse_.kinds.size(), VoxelOwners::none),
+             std::vector<std::uint32_t>(coarse_.kinds.size(), 0)};
+  owners_.assign(voxels_, 0);
+}
+
+double Lookahead::share_left(const CutPlane& plane) const {
+  const std::vector<std::vector<std::uint32_t>> parts =
+      partition(coarse_, owners_, 0, voxels_, box_, plane, split_parts_);
+  if (parts.size() < 2) {
+    return 1;
+  }
+  VoxelOwners owners = owners_;
+  for (std::uint32_t p = 0; p < parts.size(); ++p) {
+    owners.assign(parts[p], p);
+  }
+  CutVolumes total;
+  for (std::uint32_t p = 0; p < parts.size(); ++p) {
+    const CutVolumes volumes =
+        least_volumes(coarse_, owners, p, parts[p], box_,
+                      {.split_parts = split_parts_, .margin = 1, .padding = padding_});
+    total.uncut += volumes.uncut;
+    total.cut += volumes.cut;
+  }
+  return total.cut / total.uncut;
+}
+
+std::vector<CutPlane> Lookahead::evenly_spaced_planes(double margin) const {
+  std::vector<CutPlane> planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double station : stations) {
+      if ((1 - std::abs(station)) * box_.half[axis] > margin) {
+        planes.push_back({axis, station * box_.half[axis]});
+      }
+    }
+  }
+  return planes;
+}
+
+} // namespace cagewright
