@@ -18,6 +18,7 @@ struct RenderCommand {
   std::string model;
   std::string cage;
   std::string output = "cagewright.png";
+  std::string beside;
   std::vector<std::string> views = {"three-quarter"};
   std::string size = "1200x900";
   bool color_by_group = false;
@@ -114,8 +115,28 @@ Result<Image> draw(RenderCommand& command) {
   return renderer->render(scene, *views, command.options);
 }
 
+Result<Image> draw_beside(RenderCommand& command) {
+  if (command.beside.empty()) {
+    return draw(command);
+  }
+  Result<Image> left = read_png(command.beside);
+  if (!left) {
+    return left;
+  }
+  Result<Image> right = draw(command);
+  if (!right) {
+    return right;
+  }
+  if (left->height != right->height) {
+    return Error{ErrorCode::mismatch,
+                 fmt::format("{} is {} pixels high, the new picture {}; give --size",
+                             command.beside, left->height, right->height)};
+  }
+  return side_by_side({*left, *right});
+}
+
 int run(RenderCommand& command) {
-  const Result<Image> image = draw(command);
+  const Result<Image> image = draw_beside(command);
   if (!image) {
     return fail(image.error());
   }
@@ -135,6 +156,8 @@ void add_render(CLI::App& app, Session& session) {
   sub->add_option("model", command->model, "The model")->required();
   sub->add_option("cage", command->cage, "A cage to draw over it");
   sub->add_option("-o,--output", command->output, "The picture to write");
+  sub->add_option("--beside", command->beside,
+                  "A PNG picture of the same height: the new one is joined to its right");
   sub->add_option("--views,--view", command->views,
                   "Sides to draw next to each other: front, back, left, right, side, top, bottom, "
                   "three-quarter, or YAW:PITCH in degrees; separated by commas")

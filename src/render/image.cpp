@@ -1,6 +1,7 @@
 #include "render/image.h"
 
 #include "io/atomic_file.h"
+#include "io/read_file.h"
 
 #include <png.h>
 
@@ -52,6 +53,33 @@ Status write_png(const Image& image, const std::filesystem::path& path) {
     return bytes.error();
   }
   return write_file_atomically(path, *bytes);
+}
+
+Result<Image> read_png(const std::filesystem::path& path) {
+  const Result<FileBytes> file = read_file(path);
+  if (!file) {
+    return file.error();
+  }
+  const std::string_view bytes = file->view();
+  png_image header = {};
+  header.version = PNG_IMAGE_VERSION;
+  const auto complain = [&] {
+    return Error{ErrorCode::malformed, path.string() + ": " + header.message};
+  };
+  if (png_image_begin_read_from_memory(&header, bytes.data(), bytes.size()) == 0) {
+    return complain();
+  }
+  header.format = PNG_FORMAT_RGBA;
+  if (header.width > 65535 || header.height > 65535) {
+    png_image_free(&header);
+    return Error{ErrorCode::too_large, path.string() + ": more than 65535 pixels across"};
+  }
+  Image image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
+  image.pixels.resize(std::size_t{header.width} * header.height);
+  if (png_image_finish_read(&header, nullptr, image.pixels.data(), 0, nullptr) == 0) {
+    return complain();
+  }
+  return image;
 }
 
 Image side_by_side(const std::vector<Image>& images) {

@@ -34,6 +34,9 @@ Result<std::string> encode_png(const Image& image);
 /// Writes a PNG file, complete or not at all. Errors: too_large, cannot_write.
 Status write_png(const Image& image, const std::filesystem::path& path);
 
+/// Reads a PNG file. Errors: cannot_open, malformed, too_large.
+Result<Image> read_png(const std::filesystem::path& path);
+
 /// Pictures of the same height from left to right.
 Image side_by_side(const std::vector<Image>& images);
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -51,6 +53,26 @@ TEST(WritePng, LeavesNothingWhereItCannotWrite) {
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::cannot_write);
   EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
+TEST(ReadPng, GivesBackWhatWasWritten) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("cagewright_image_test_" + std::to_string(getpid()) + ".png");
+  const Image image = small_image(200);
+  ASSERT_TRUE(write_png(image, path));
+  const Result<Image> back = read_png(path);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->width, image.width);
+  EXPECT_EQ(back->pixels, image.pixels);
+
+  // A file cut short is refused, wherever it ends.
+  const std::string bytes = *encode_png(image);
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{7}, std::size_t{20}, bytes.size() - 20}) {
+    std::ofstream(path, std::ios::binary) << bytes.substr(0, length);
+    EXPECT_FALSE(read_png(path)) << length;
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(SideBySide, PutsImagesFromLeftToRight) {
