@@ -1,0 +1,95 @@
+#include "binding.h"
+
+#include "io/read_mesh.h"
+#include "mesh/triangulate.h"
+#include "validate/validate_cage.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string_view>
+
+namespace cagewright::cli {
+namespace {
+
+std::string list_of_violations(const ValidityReport& report) {
+  std::string list;
+  for (std::size_t k = 0; k < violation_kinds; ++k) {
+    if (report.counts[k] > 0) {
+      list += fmt::format("{}{} {}", list.empty() ? "" : ", ", report.counts[k],
+                          name_of(static_cast<ViolationKind>(k)));
+    }
+  }
+  return list;
+}
+
+} // namespace
+
+Error about_file(const std::string& path, const Error& error) {
+  return {error.code, path + ": " + error.message};
+}
+
+void add_binding_options(CLI::App& command, BindingOptions& options) {
+  command.add_option("model", options.model, "The model")->required();
+  command.add_option("cage", options.cage, "Its cage at rest: closed, round the model")->required();
+  command
+      .add_option("--quads", options.quads,
+                  "What the cage is inside a quad: four triangles round its center, or two along "
+                  "its diagonal")
+      ->check(CLI::IsMember({"center", "diagonal"}));
+  command.add_flag("--strict", options.strict,
+                   "Stop with exit code 1 unless the cage is valid for the model; else only warn");
+}
+
+Result<ModelAndCage> read_model_and_cage(const BindingOptions& options) {
+  Result<PolygonMesh> model = read_mesh(options.model);
+  if (!model) {
+    return model.error();
+  }
+  Result<PolygonMesh> cage = read_mesh(options.cage);
+  if (!cage) {
+    return cage.error();
+  }
+  return ModelAndCage{*std::move(model), *std::move(cage)};
+}
+
+Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Session& session) {
+  const Triangulation triangles = triangulate(meshes.model);
+  const Result<ValidityReport> report =
+      validate_cage(meshes.cage, TriangleView{meshes.model.positions, triangles.triangles},
+                    {.allow_pieces = true, .max_listed = 0}, session.progress());
+  if (!report) {
+    return report.error();
+  }
+  if (report->valid()) {
+    return success();
+  }
+  const std::string message =
+      fmt::format("{}: not a valid cage of this model: {} ('cagewright check' says where)",
+                  options.cage, list_of_violations(*report));
+  if (options.strict) {
+    return Error{ErrorCode::no_valid_cage, message};
+  }
+  std::fprintf(stderr, "cagewright: warning: %s\n", message.c_str());
+  return success();
+}
+
+Result<MeanValueSolver> make_solver(const PolygonMesh& cage, const BindingOptions& options) {
+  Result<MeanValueSolver> solver = MeanValueSolver::create(
+      cage, {.quads = options.quads == "diagonal" ? QuadTreatment::diagonal : QuadTreatment::center,
+             .allow_open = true});
+  return solver ? std::move(solver) : about_file(options.cage, solver.error());
+}
+
+void warn_of_points(const std::string& cage, std::size_t on_surface, std::size_t undefined) {
+  const auto warn = [&](std::size_t count, const char* what) {
+    if (count > 0) {
+      std::fprintf(stderr, "cagewright: warning: %s: %zu model %s %s\n", cage.c_str(), count,
+                   count == 1 ? "vertex" : "vertices", what);
+    }
+  };
+  warn(on_surface, "on the cage: only the face there moves them");
+  warn(undefined, "without weights: left at rest");
+}
+
+} // namespace cagewright::cli

@@ -1,0 +1,46 @@
+/// \file
+/// What the commands bind and deform share: a model, a cage at rest, and whether they fit.
+#pragma once
+
+#include "session.h"
+
+#include "coordinates/mean_value.h"
+#include "mesh/polygon_mesh.h"
+
+#include <cstddef>
+#include <string>
+
+namespace cagewright::cli {
+
+/// How a model is bound, as the command line says.
+struct BindingOptions {
+  std::string model;
+  std::string cage;
+  std::string quads = "center";
+  bool strict = false;
+};
+
+/// The error, with the file it is about in front.
+Error about_file(const std::string& path, const Error& error);
+
+/// Declares the arguments MODEL and CAGE and the options --quads and --strict.
+void add_binding_options(CLI::App& command, BindingOptions& options);
+
+struct ModelAndCage {
+  PolygonMesh model;
+  PolygonMesh cage;
+};
+
+Result<ModelAndCage> read_model_and_cage(const BindingOptions& options);
+
+/// Says on stderr what is wrong with the cage for this model, with counts. With --strict that is an
+/// error (no_valid_cage).
+Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Session& session);
+
+/// The cage ready for binding; it may be open, of which judge() has warned.
+Result<MeanValueSolver> make_solver(const PolygonMesh& cage, const BindingOptions& options);
+
+/// Says on stderr how many model vertices lie on the cage or stay at rest, if any.
+void warn_of_points(const std::string& cage, std::size_t on_surface, std::size_t undefined);
+
+} // namespace cagewright::cli

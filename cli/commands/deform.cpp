@@ -1,0 +1,354 @@
+#include "binding.h"
+#include "session.h"
+
+#include "deform/apply.h"
+#include "deform/normals.h"
+#include "deform/stream.h"
+#include "deform/weights_file.h"
+#include "io/mesh_format.h"
+#include "io/read_mesh.h"
+#include "io/rewrite_positions.h"
+#include "io/write_mesh.h"
+#include "mesh/measures.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cagewright::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  BindingOptions binding;
+  std::vector<std::string> poses;
+  std::string output;
+  std::string weights;
+  std::vector<std::string> groups;
+};
+
+struct Pose {
+  std::string path;
+  std::string output;
+};
+
+/// Names with * or ? that the shell has left alone, for example because they were quoted.
+Result<std::vector<std::string>> expand(const std::vector<std::string>& names) {
+  std::vector<std::string> paths;
+  for (const std::string& name : names) {
+    glob_t found{};
+    if (name.find_first_of("*?[") == std::string::npos || fs::exists(name)) {
+      paths.push_back(name);
+    } else if (glob(name.c_str(), 0, nullptr, &found) == 0) {
+      paths.insert(paths.end(), found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    } else {
+      return Error{ErrorCode::cannot_open, name + ": no file has such a name"};
+    }
+    globfree(&found);
+  }
+  return paths;
+}
+
+/// Where each pose goes: OUT itself for a single one; else OUT is a folder, or a name in which *
+/// stands for the name of the pose.
+Result<std::vector<Pose>> plan_outputs(const Options& options) {
+  const Result<std::vector<std::string>> paths = expand(options.poses);
+  if (!paths) {
+    return paths.error();
+  }
+  const std::string extension = fs::path(options.binding.model).extension().string();
+  const std::size_t star = options.output.find('*');
+  const bool is_folder = fs::is_directory(options.output) || options.output.ends_with('/');
+  if (paths->size() > 1 && star == std::string::npos && !is_folder) {
+    return Error{ErrorCode::invalid_option,
+                 fmt::format("--output: {} is one file, but there are {} deformed cages; give a "
+                             "folder, or a name with * for the name of the cage",
+                             options.output, paths->size())};
+  }
+  std::vector<Pose> poses;
+  std::set<std::string> taken;
+  for (const std::string& path : *paths) {
+    const std::string stem = fs::path(path).stem().string();
+    std::string output = options.output;
+    if (is_folder) {
+      output = (fs::path(output) / (stem + extension)).string();
+    } else if (star != std::string::npos) {
+      output.replace(star, 1, stem);
+    }
+    if (!taken.insert(output).second) {
+      return Error{ErrorCode::invalid_option,
+                   "--output: two deformed cages would both be written to " + output};
+    }
+    poses.push_back({path, output});
+  }
+  if (is_folder) {
+    std::error_code error;
+    fs::create_directories(options.output, error);
+    if (error) {
+      return Error{ErrorCode::cannot_write, options.output + ": " + error.message()};
+    }
+  }
+  return poses;
+}
+
+Result<std::vector<std::vector<Vec3>>> read_poses(const std::vector<Pose>& poses,
+                                                  const PolygonMesh& rest) {
+  std::vector<std::vector<Vec3>> positions;
+  for (const Pose& pose : poses) {
+    Result<PolygonMesh> cage = read_mesh(pose.path);
+    if (!cage) {
+      return cage.error();
+    }
+    if (Status status = same_topology(rest, *cage, pose.path); !status) {
+      return status.error();
+    }
+    positions.push_back(std::move(cage->positions));
+  }
+  return positions;
+}
+
+/// The vertices that may move: those of the faces of the named groups, or all.
+Result<std::vector<Index>> chosen_vertices(const PolygonMesh& model,
+                                           const std::vector<std::string>& groups) {
+  std::vector<Index> chosen;
+  if (groups.empty()) {
+    chosen.resize(model.positions.size());
+    std::iota(chosen.begin(), chosen.end(), Index(0));
+    return chosen;
+  }
+  std::vector<bool> is_chosen_group(model.group_names.size(), false);
+  for (const std::string& group : groups) {
+    const auto found = std::find(model.group_names.begin(), model.group_names.end(), group);
+    if (found == model.group_names.end()) {
+      std::string known;
+      for (const std::string& name : model.group_names) {
+        known += (known.empty() ? "" : ", ") + name;
+      }
+      return Error{ErrorCode::invalid_option,
+                   "--only: the model has no group '" + group + "'" +
+                       (known.empty() ? ", nor any other" : "; it has " + known)};
+    }
+    is_chosen_group[static_cast<std::size_t>(found - model.group_names.begin())] = true;
+  }
+  std::vector<bool> is_chosen(model.positions.size(), false);
+  for (std::size_t f = 0; f < model.face_count(); ++f) {
+    if (is_chosen_group[model.face_groups[f]]) {
+      for (const Index v : model.face(f)) {
+        is_chosen[v] = true;
+      }
+    }
+  }
+  for (Index v = 0; v < is_chosen.size(); ++v) {
+    if (is_chosen[v]) {
+      chosen.push_back(v);
+    }
+  }
+  return chosen;
+}
+
+std::vector<Vec3> at(std::span<const Vec3> positions, std::span<const Index> indices) {
+  std::vector<Vec3> result;
+  result.reserve(indices.size());
+  for (const Index i : indices) {
+    result.push_back(positions[i]);
+  }
+  return result;
+}
+
+/// Deforms with the weights of a file: for each pose all P positions.
+Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
+                                                    const ModelAndCage& meshes,
+                                                    std::span<const std::vector<Vec3>> poses) {
+  const Result<StoredWeights> stored = read_weights(options.weights);
+  if (!stored) {
+    return stored.error();
+  }
+  if (Status status = belongs_to(*stored, meshes.model.positions, meshes.cage); !status) {
+    return about_file(options.weights, status.error());
+  }
+  std::vector<Index> all(meshes.cage.positions.size());
+  std::iota(all.begin(), all.end(), Index(0));
+  std::vector<std::vector<Vec3>> results;
+  for (const std::vector<Vec3>& pose : poses) {
+    std::vector<Vec3> displacements = pose;
+    for (std::size_t c = 0; c < pose.size(); ++c) {
+      displacements[c] -= meshes.cage.positions[c];
+    }
+    results.push_back(meshes.model.positions);
+    move_points(stored->weights, all, displacements, meshes.model.positions, results.back());
+  }
+  return results;
+}
+
+/// Deforms without stored weights.
+Result<std::vector<std::vector<Vec3>>> deform_directly(const Options& options,
+                                                       const ModelAndCage& meshes,
+                                                       std::span<const std::vector<Vec3>> poses,
+                                                       std::span<const Index> chosen,
+                                                       const Session& session) {
+  const Result<MeanValueSolver> solver = make_solver(meshes.cage, options.binding);
+  if (!solver) {
+    return solver.error();
+  }
+  Result<StreamedPoses> streamed =
+      deform_streaming(*solver, meshes.cage.positions, poses, at(meshes.model.positions, chosen),
+                       session.progress());
+  if (!streamed) {
+    return streamed.error();
+  }
+  warn_of_points(options.binding.cage, streamed->on_surface, streamed->undefined);
+  std::vector<std::vector<Vec3>> results;
+  for (const std::vector<Vec3>& moved : streamed->positions) {
+    std::vector<Vec3>& positions = results.emplace_back(meshes.model.positions);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      positions[chosen[i]] = moved[i];
+    }
+  }
+  return results;
+}
+
+/// Vertices outside the chosen groups go back to rest.
+void keep_others(std::span<const Vec3> rest, std::span<const Index> chosen,
+                 std::vector<Vec3>& positions) {
+  std::vector<Vec3> result(rest.begin(), rest.end());
+  for (const Index v : chosen) {
+    result[v] = positions[v];
+  }
+  positions = std::move(result);
+}
+
+/// The normals that a model file stores, ready to follow.
+std::optional<NormalField> normals_of(const PolygonMesh& model, const FileNormals& stored) {
+  if (stored.normals.empty()) {
+    return std::nullopt;
+  }
+  // Corners without a normal share a slot of their own, behind the others.
+  NormalSlots slots{stored.of_corner, stored.normals.size() + 1, stored.normals};
+  slots.given.push_back(Vec3::Zero());
+  std::ranges::replace(slots.of_corner, FileNormals::none,
+                       static_cast<Index>(stored.normals.size()));
+  return NormalField(model, std::move(slots));
+}
+
+/// Writes the model with other positions: the same file in all else where the format is the same.
+Status write_model(const std::string& original, const PolygonMesh& model,
+                   std::span<const Vec3> positions, std::optional<NormalField>& normals,
+                   const std::string& output) {
+  if (format_of_name(original) != format_of_name(output)) {
+    PolygonMesh moved = model;
+    moved.positions.assign(positions.begin(), positions.end());
+    return write_mesh(moved, output);
+  }
+  if (!normals) {
+    return rewrite_positions(original, positions, {}, output);
+  }
+  normals->update(positions);
+  const std::span<const Vec3> stored =
+      normals->normals().first(normals->normals().size() - 1); // without the slot for none
+  return rewrite_positions(original, positions, stored, output);
+}
+
+std::string summary(std::span<const Vec3> rest, std::span<const Vec3> positions,
+                    const std::string& output) {
+  double farthest = 0;
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < rest.size(); ++v) {
+    const double distance = (positions[v] - rest[v]).norm();
+    farthest = std::max(farthest, distance);
+    moved += distance > 0 ? 1U : 0U;
+  }
+  return fmt::format("{}: {} of {} vertices moved, by up to {:.3g} % of the diagonal\n", output,
+                     moved, rest.size(), 100 * farthest / diagonal(rest));
+}
+
+int run(const Options& options, const Session& session) {
+  const auto start = std::chrono::steady_clock::now();
+  const Result<std::vector<Pose>> poses = plan_outputs(options);
+  if (!poses) {
+    return fail(poses.error());
+  }
+  const Result<ModelAndCage> meshes = read_model_and_cage(options.binding);
+  if (!meshes) {
+    return fail(meshes.error());
+  }
+  const Result<std::vector<std::vector<Vec3>>> cages = read_poses(*poses, meshes->cage);
+  if (!cages) {
+    return fail(cages.error());
+  }
+  const std::vector<Vec3>& rest = meshes->model.positions;
+  const Result<std::vector<Index>> chosen = chosen_vertices(meshes->model, options.groups);
+  if (!chosen) {
+    return fail(chosen.error());
+  }
+  const Result<FileNormals> stored_normals = read_normals(options.binding.model);
+  if (!stored_normals) {
+    return fail(stored_normals.error());
+  }
+  // With weights from a file the cage was judged when they were made.
+  if (options.weights.empty() || options.binding.strict) {
+    if (Status status = judge(*meshes, options.binding, session); !status) {
+      return fail(status.error());
+    }
+  }
+  Result<std::vector<std::vector<Vec3>>> results =
+      options.weights.empty() ? deform_directly(options, *meshes, *cages, *chosen, session)
+                              : apply_stored(options, *meshes, *cages);
+  if (!results) {
+    return fail(results.error());
+  }
+  std::optional<NormalField> normals = normals_of(meshes->model, *stored_normals);
+  for (std::size_t i = 0; i < poses->size(); ++i) {
+    keep_others(rest, *chosen, (*results)[i]);
+    if (Status status = write_model(options.binding.model, meshes->model, (*results)[i], normals,
+                                    (*poses)[i].output);
+        !status) {
+      return fail(status.error());
+    }
+    if (!session.quiet) {
+      std::fputs(summary(rest, (*results)[i], (*poses)[i].output).c_str(), stdout);
+    }
+  }
+  if (!session.quiet) {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    fmt::print("{:.2f} s in all\n", seconds.count());
+  }
+  return done;
+}
+
+} // namespace
+
+void add_deform(CLI::App& app, Session& session) {
+  CLI::App* command = app.add_subcommand("deform", "Move a model as its cage has moved");
+  auto options = std::make_shared<Options>();
+  add_binding_options(*command, options->binding);
+  command
+      ->add_option("deformed-cage", options->poses,
+                   "The cage with its vertices moved; several, or a quoted pattern such as "
+                   "'frame_*.obj', for a sequence")
+      ->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "The model to write, with all that the original holds. For a sequence a folder, "
+                   "or a name with * for the name of the deformed cage")
+      ->required();
+  command->add_option("--weights", options->weights, "Use the weights that bind has stored");
+  command->add_option("--only", options->groups,
+                      "Move only the vertices of this group of the model; repeatable");
+  command->callback([&session, options] {
+    session.run = [&session, options] { return run(*options, session); };
+  });
+}
+
+} // namespace cagewright::cli
