@@ -22,7 +22,8 @@ constexpr double round_off = 1e-6;
 // two would be 0.25, which simple ratios of a box's edges hit exactly: then round-off would choose.
 constexpr double least_gap = 0.2327;
 
-constexpr double max_voxels = 2147483648.0;
+// Classification takes up to some 20 bytes for each.
+constexpr double max_voxels = 1 << 28;
 
 double fraction(double x) {
   return x - std::floor(x);
@@ -79,7 +80,7 @@ Result<VoxelGrid> make_grid(TriangleView mesh, const OrientedBox& frame,
     voxels *= l.last - l.first + 1;
     if (!(voxels <= max_voxels)) {
       return Error{ErrorCode::too_large,
-                   "the grid would need more than 2^31 voxels; lower the resolution"};
+                   "the grid would need more than 2^28 voxels; lower the resolution"};
     }
     grid.dims[k] = static_cast<int>(l.last - l.first) + 1;
   }
