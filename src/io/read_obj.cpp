@@ -132,7 +132,7 @@ private:
       const std::size_t word = cursor_.offset();
       const std::optional<std::int64_t> vertex = cursor_.integer_prefix();
       if (!vertex || !skip_texture_and_normal()) {
-        return corner_error(word);
+        return corner_error(word, vertex.has_value());
       }
       const std::int64_t count = static_cast<std::int64_t>(mesh_.positions.size());
       const std::int64_t index = *vertex > 0 ? *vertex - 1 : *vertex + count;
@@ -174,12 +174,13 @@ private:
     return index >= 0 && index < FileNormals::none ? static_cast<Index>(index) : FileNormals::none;
   }
 
-  Error corner_error(std::size_t word) {
+  Error corner_error(std::size_t word, bool has_vertex) {
     cursor_.move_to(word);
     const std::string_view text = cursor_.peek_word();
     const std::string_view digits = text.substr(0, text.find('/'));
-    if (!digits.empty() && digits.find_first_not_of("0123456789", digits[0] == '-' ? 1 : 0) ==
-                               std::string_view::npos) {
+    if (!has_vertex && !digits.empty() &&
+        digits.find_first_not_of("0123456789", digits[0] == '-' ? 1 : 0) ==
+            std::string_view::npos) {
       return source_.error_in_line(word,
                                    no_such_vertex("face", one_line(digits, 40),
                                                   static_cast<std::size_t>(vertices_in_file())));

@@ -86,8 +86,10 @@ private:
         return std::size_t{0};
       }
     }
+    const std::size_t begin = cursor_.offset();
     const std::optional<std::int64_t> count = cursor_.integer();
     if (!count || (*count < 0 && required)) {
+      cursor_.move_to(begin);
       return cursor_.error("the header should have the number of " + std::string(what) +
                            " here, but has " + found_here() + std::string(export_again));
     }
@@ -133,8 +135,10 @@ private:
     if (!cursor_.next_word_of_file()) {
       return ends_early(f, "face", counts_.faces);
     }
+    const std::size_t begin = cursor_.offset();
     const std::optional<std::int64_t> count = cursor_.integer();
     if (!count || *count < 1) {
+      cursor_.move_to(begin);
       return cursor_.error("face " + std::to_string(f) +
                            " should begin with its number of corners, but there is " +
                            found_here() + std::string(export_again));

@@ -84,8 +84,8 @@ private:
       row += Values::least_size(property.count_type.value_or(property.type));
     }
     if (row != 0 && element.count > values_.remaining() / row) {
-      return source_.error("the header promises " + std::to_string(element.count) +
-                           " rows of the element " + in_quotes(element.name) +
+      return source_.error("the header promises " + counted(element.count, "row") +
+                           " of the element " + in_quotes(element.name) +
                            ", but the file ends before; it is cut short" +
                            std::string(export_again));
     }

@@ -16,7 +16,8 @@
 namespace cagewright {
 
 /// A position in a text. Words are separated by blanks; '#' at the start of a word begins a comment
-/// that ends with the line. No memory is allocated and every byte is looked at about once.
+/// that ends with the line (within a word it does not: some programs write nan as 1.#QNAN). No
+/// memory is allocated and every byte is looked at about once.
 class TextCursor {
 public:
   /// What a backslash before a line end means: OBJ carries the line on.
@@ -183,8 +184,7 @@ private:
   }
 
   [[nodiscard]] bool ends_word(const char* p) const {
-    return p == end_ || is_blank(*p) || *p == line_end_ || *p == '#' ||
-           (*p == '\\' && continues_at(p));
+    return p == end_ || is_blank(*p) || *p == line_end_ || (*p == '\\' && continues_at(p));
   }
 
   /// Whether the backslash at p is the last of its line and carries it on.

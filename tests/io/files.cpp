@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -75,7 +76,8 @@ std::vector<Sample> samples() {
       R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
       R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
       R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],)"
-      R"("bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":48},)"
+      R"({"buffer":0,"byteOffset":48,"byteLength":24}],)"
       R"("buffers":[{"byteLength":72)";
   const std::string base64 = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"
                              "AAACAAEAAAABAAMAAAADAAIAAQACAAMA";

@@ -1,0 +1,170 @@
+#include "io/rewrite_positions.h"
+
+#include "io/files.h"
+#include "io/read_mesh.h"
+
+#include <gtest/gtest.h>
+
+namespace cagewright {
+namespace {
+
+using test::bytes_of;
+using test::TemporaryFolder;
+
+const std::string obj = "# made by hand  \r\n"
+                        "mtllib skin.mtl\r\n"
+                        "o left arm\\\r\n"
+                        "v   0 0\t0   1 0.5 0  # the first\r\n"
+                        "vt .5 .50\r\n"
+                        "v 1.000 \\\r\n 0 0\r\n"
+                        "vn 0 0 1.0\r\n"
+                        "vn 0 1 0\r\n"
+                        "v 0 +1e0 0 1.0\r\n"
+                        "\r\n"
+                        "usemtl blue\r\n"
+                        "s off\r\n"
+                        "f 1/1/1 2//2 -1\r\n"
+                        "l 1 2\r\n"
+                        "unknown v 1 2 3\r\n"
+                        "f 3 2/1 1//-2";
+
+const std::vector<Vec3> moved = {{0.1, -2, 1e-300}, {1.0 / 3, 5, 6}, {7, 8, -0.0}};
+
+std::string rewritten(std::string_view name, std::string_view bytes,
+                      std::span<const Vec3> positions, std::span<const Vec3> normals = {}) {
+  const TemporaryFolder folder;
+  const auto original = folder.add(name, bytes);
+  const Status status = rewrite_positions(original, positions, normals, folder / "out");
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_EQ(bytes_of(original), bytes);
+  return bytes_of(folder / "out");
+}
+
+TEST(RewritePositions, ChangesOnlyTheNumbersOfAnObjFile) {
+  EXPECT_EQ(rewritten("a.obj", obj, moved), "# made by hand  \r\n"
+                                            "mtllib skin.mtl\r\n"
+                                            "o left arm\\\r\n"
+                                            "v   0.1 -2\t1e-300   1 0.5 0  # the first\r\n"
+                                            "vt .5 .50\r\n"
+                                            "v 0.3333333333333333 \\\r\n 5 6\r\n"
+                                            "vn 0 0 1.0\r\n"
+                                            "vn 0 1 0\r\n"
+                                            "v 7 8 -0 1.0\r\n"
+                                            "\r\n"
+                                            "usemtl blue\r\n"
+                                            "s off\r\n"
+                                            "f 1/1/1 2//2 -1\r\n"
+                                            "l 1 2\r\n"
+                                            "unknown v 1 2 3\r\n"
+                                            "f 3 2/1 1//-2");
+}
+
+TEST(RewritePositions, ChangesNormalsWhereTheyAreGiven) {
+  const std::string text = rewritten("a.obj", obj, moved, std::vector<Vec3>{{1, 0, 0}, {0, 0, -1}});
+  EXPECT_NE(text.find("vn 1 0 0\r\nvn 0 0 -1\r\n"), std::string::npos);
+  EXPECT_NE(text.find("vt .5 .50"), std::string::npos);
+}
+
+TEST(RewritePositions, GivesTheFileItselfForItsOwnPositions) {
+  for (const test::Sample& sample : test::samples()) {
+    if (sample.format == MeshFormat::gltf || sample.name == "binary stl") {
+      continue; // the facet normals of the sample are zero
+    }
+    const Result<PolygonMesh> mesh = test::read(sample.bytes, sample.format);
+    ASSERT_TRUE(mesh);
+    std::string expected = sample.bytes;
+    if (sample.format == MeshFormat::obj) {
+      expected.replace(expected.find("1e0"), 3, "1");
+    }
+    EXPECT_EQ(rewritten("a", sample.bytes, mesh->positions), expected) << sample.name;
+  }
+}
+
+TEST(RewritePositions, IsReadAsTheNewPositionsAndTheOldFacesInEveryFormat) {
+  const TemporaryFolder folder;
+  for (const test::Sample& sample : test::samples()) {
+    if (sample.format == MeshFormat::gltf) {
+      continue;
+    }
+    const auto original = folder.add("a", sample.bytes);
+    const Result<PolygonMesh> before = read_mesh(original);
+    ASSERT_TRUE(before);
+    std::vector<Vec3> positions = before->positions;
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      positions[v] = 2 * positions[v] + Vec3(0.5, -0.25, static_cast<double>(v)); // exact in float
+    }
+    const Status status = rewrite_positions(original, positions, {}, folder / "out");
+    ASSERT_TRUE(status) << status.error().message;
+    const Result<PolygonMesh> after = read_mesh(folder / "out");
+    ASSERT_TRUE(after) << sample.name << ": " << after.error().message;
+    EXPECT_EQ(after->positions, positions) << sample.name;
+    EXPECT_EQ(test::faces_of(*after), test::faces_of(*before)) << sample.name;
+    EXPECT_EQ(after->colors, before->colors) << sample.name;
+  }
+}
+
+TEST(RewritePositions, ComputesTheNormalsOfStlAnew) {
+  const std::string text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                           "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+  EXPECT_EQ(rewritten("a.stl", text, std::vector<Vec3>{{0, 0, 0}, {0, 2, 0}, {0, 0, 2}}),
+            "solid a\nfacet normal 1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 2 0\n"
+            "vertex 0 0 2\nendloop\nendfacet\nendsolid a\n");
+}
+
+TEST(RewritePositions, KeepsOtherElementsOfPly) {
+  const std::string header = "ply\nformat ascii 1.0\ncomment mine\nelement extra 2\nproperty list "
+                             "uchar int items\nelement vertex 3\nproperty float quality\nproperty "
+                             "float z\nproperty float x\nproperty float y\nelement face "
+                             "1\nproperty list uchar int vertex_indices\nend_header\n2 7 7\n0\n";
+  EXPECT_EQ(rewritten("a.ply", header + "9 3 1 2\n9  6 4 5\n9 9 7 8 \n3 0 1 2\n",
+                      std::vector<Vec3>{{10, 20, 30}, {40, 50, 60}, {70, 80, 0.1}}),
+            header + "9 30 10 20\n9  60 40 50\n9 0.1 70 80 \n3 0 1 2\n");
+}
+
+TEST(RewritePositions, RefusesWhatDoesNotBelongTogether) {
+  const TemporaryFolder folder;
+  const auto original = folder.add("a.obj", obj);
+  const auto message = [&](std::span<const Vec3> positions, std::span<const Vec3> normals) {
+    const Status status = rewrite_positions(original, positions, normals, folder / "out.obj");
+    EXPECT_FALSE(status);
+    return status ? "written" : status.error().message.substr(original.string().size());
+  };
+  EXPECT_EQ(message(std::span(moved).first(2), {}),
+            ": has 3 vertices, but 2 are to be written; check that this is the model they were "
+            "made from");
+  EXPECT_EQ(message(moved, moved), ": has 2 normals, but 3 are to be written; check that this is "
+                                   "the model they were made from");
+  std::vector<Vec3> broken = moved;
+  broken[1].x() = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(rewrite_positions(original, broken, {}, folder / "out.obj"));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.obj"});
+}
+
+TEST(RewritePositions, SaysThatItDoesNotRewriteGltf) {
+  const TemporaryFolder folder;
+  const auto original = folder.add("a.glb", "glTF");
+  const Status status = rewrite_positions(original, moved, {}, folder / "out.glb");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::unsupported);
+}
+
+TEST(ReadNormals, TellsWhichCornerUsesWhich) {
+  const TemporaryFolder folder;
+  const Result<FileNormals> normals = read_normals(folder.add("a.obj", obj));
+  ASSERT_TRUE(normals) << normals.error().message;
+  EXPECT_EQ(normals->normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}}));
+  constexpr Index none = FileNormals::none;
+  EXPECT_EQ(normals->of_corner, (std::vector<Index>{0, 1, none, none, none, 0}));
+}
+
+TEST(ReadNormals, GivesNoneForAFileWithoutThem) {
+  const TemporaryFolder folder;
+  const Result<FileNormals> normals =
+      read_normals(folder.add("a.obj", "v 0 0 0\nf 1//7 1//0 1//-1\n"));
+  ASSERT_TRUE(normals) << normals.error().message;
+  EXPECT_TRUE(normals->normals.empty());
+  EXPECT_TRUE(normals->of_corner.empty());
+}
+
+} // namespace
+} // namespace cagewright
