@@ -338,12 +338,12 @@ TEST(ReadGltf, RefusesContainersThatAreCutShort) {
 
 TEST(ReadGltf, RefusesInstancesWithoutEnd) {
   // A thousand primitives over the same million triangles, from a file of three megabytes.
-  Parts parts;
-  parts.primitives = "[";
+  std::string primitives(1, '[');
   for (int i = 0; i < 1000; ++i) {
-    parts.primitives += R"({"attributes":{"POSITION":0},"indices":1},)";
+    primitives += R"({"attributes":{"POSITION":0},"indices":1},)";
   }
-  parts.primitives += R"({"attributes":{"POSITION":0}}])";
+  primitives += R"({"attributes":{"POSITION":0}}])";
+  Parts parts{.primitives = primitives};
   parts.accessors = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
                     R"({"bufferView":1,"componentType":5121,"count":3000000,"type":"SCALAR"}])";
   parts.views =
