@@ -24,7 +24,7 @@ constexpr double margin_factor = 1.05;
 
 Result<VoxelGrid> voxels(TriangleView model, const EnvelopeOptions& options, int resolution,
                          const Progress& progress) {
-  const Box3 box = bounding_box(model);
+  const Box3 box = bounding_box(model.positions);
   const double diagonal = box.diagonal().norm();
   OrientedBox frame;
   frame.center = box.center();
@@ -38,13 +38,11 @@ Result<VoxelGrid> voxels(TriangleView model, const EnvelopeOptions& options, int
   return voxelize(model, frame, voxel, progress);
 }
 
-// Everything not occupied that is further than `reach` voxels from all that is not within `reach`
-// of an occupied voxel. By layers of face, edge and corner neighbours in turn the distance is close
-// to Euclidean.
+// Adds to the set every voxel whose center is within `reach` voxels of the center of one in it.
 void grow(std::vector<std::uint8_t>& set, const std::array<int, 3>& dims, double reach) {
-  const std::size_t nx = static_cast<std::size_t>(dims[0]);
-  const std::size_t ny = static_cast<std::size_t>(dims[1]);
-  const std::size_t nz = static_cast<std::size_t>(dims[2]);
+  const auto nx = static_cast<std::size_t>(dims[0]);
+  const auto ny = static_cast<std::size_t>(dims[1]);
+  const auto nz = static_cast<std::size_t>(dims[2]);
   // Separable squared distance, cut off at the reach: along x, then y, then z.
   const int r = static_cast<int>(std::floor(reach));
   const double far = reach * reach + 1;
@@ -139,6 +137,11 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
                           const Progress& progress) {
   if (!(options.clearance > 0 && options.clearance < 1)) {
     return Error{ErrorCode::invalid_option, "the clearance must be above 0 and below 1"};
+  }
+  const double size = diagonal(model.positions);
+  if (!(size > 0) || !std::isfinite(size)) {
+    return Error{ErrorCode::unfit_model,
+                 "the model has no extent, or a coordinate that is not finite"};
   }
   if (options.resolution != 0) {
     if (options.resolution < 2 || options.resolution > 4096) {

@@ -21,6 +21,7 @@ public:
                 double slack)
       : quadratic_(quadratic), constraints_(constraints), slack_(slack),
         size_(static_cast<Eigen::Index>(3 * quadratic.gradient.size())) {
+    lay_out();
     hessian_ = assemble({});
     gradient_.resize(size_);
     for (std::size_t v = 0; v < quadratic.gradient.size(); ++v) {
@@ -68,7 +69,8 @@ public:
       const double sigma = mu > 0 ? std::pow(after / mu, 3) : 0;
       const Step step =
           direction((s.cwiseProduct(z) + affine.s.cwiseProduct(affine.z)).array() - sigma * mu);
-      const double length = std::min(1.0, 0.99 * std::min(longest(s, step.s), longest(z, step.z)));
+      const double longest_step = std::min(longest(s, step.s), longest(z, step.z));
+      const double length = count > 0 ? 0.99 * longest_step : 1;
       x += length * step.x;
       s += length * step.s;
       z += length * step.z;
@@ -106,42 +108,89 @@ private:
     return step;
   }
 
-  // Lower triangle of the Hessian plus the constraints' outer products, weighted.
-  [[nodiscard]] Sparse assemble(const Vector& weights) const {
+  // The blocks on and below the diagonal that are not zero, and where each goes.
+  void lay_out() {
+    std::vector<std::array<Index, 2>> all;
+    for (const BlockQuadratic::Term& t : quadratic_.terms) {
+      all.push_back({std::max(t.row, t.column), std::min(t.row, t.column)});
+    }
+    for (const BlockConstraint& c : constraints_) {
+      for_pairs(c, [&](int i, int j) { all.push_back({c.vertex[i], c.vertex[j]}); });
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    const auto at = [&](Index row, Index column) {
+      return static_cast<Index>(std::lower_bound(all.begin(), all.end(), std::array{row, column}) -
+                                all.begin());
+    };
+    for (const BlockQuadratic::Term& t : quadratic_.terms) {
+      term_block_.push_back(at(std::max(t.row, t.column), std::min(t.row, t.column)));
+    }
+    for (const BlockConstraint& c : constraints_) {
+      for_pairs(c,
+                [&](int i, int j) { constraint_block_.push_back(at(c.vertex[i], c.vertex[j])); });
+    }
+    blocks_.resize(all.size());
     std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(9 * (quadratic_.terms.size() + 6 * static_cast<std::size_t>(weights.size())));
-    const auto add = [&](Index row, Index column, const Mat3& block) {
+    for (const auto& [row, column] : all) {
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
-          const int r = static_cast<int>(3 * row) + i;
-          const int c = static_cast<int>(3 * column) + j;
-          if (r >= c) {
-            entries.emplace_back(r, c, block(i, j));
+          if (row != column || i >= j) {
+            entries.emplace_back(static_cast<int>(3 * row) + i, static_cast<int>(3 * column) + j,
+                                 1.0);
           }
         }
       }
-    };
-    for (const BlockQuadratic::Term& t : quadratic_.terms) {
-      if (t.row >= t.column) {
-        add(t.row, t.column, t.block);
-      } else {
-        add(t.column, t.row, t.block.transpose());
+    }
+    matrix_.resize(size_, size_);
+    matrix_.setFromTriplets(entries.begin(), entries.end());
+    for (const Eigen::Triplet<double>& e : entries) {
+      slot_.push_back(&matrix_.coeffRef(e.row(), e.col()));
+    }
+    is_diagonal_.resize(all.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      is_diagonal_[k] = all[k][0] == all[k][1];
+    }
+  }
+
+  // Calls with the pairs (i, j) of a constraint's corners that make blocks on or below the
+  // diagonal.
+  template <class Visit> static void for_pairs(const BlockConstraint& c, const Visit& visit) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        if (c.weight[i] != 0 && c.weight[j] != 0 && c.vertex[i] >= c.vertex[j]) {
+          visit(i, j);
+        }
       }
     }
+  }
+
+  // Lower triangle of the Hessian plus the constraints' outer products, weighted.
+  const Sparse& assemble(const Vector& weights) {
+    std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero());
+    for (std::size_t k = 0; k < quadratic_.terms.size(); ++k) {
+      const BlockQuadratic::Term& t = quadratic_.terms[k];
+      if (t.row >= t.column) {
+        blocks_[term_block_[k]] += t.block;
+      } else {
+        blocks_[term_block_[k]] += t.block.transpose();
+      }
+    }
+    auto block = constraint_block_.begin();
     for (Eigen::Index k = 0; k < weights.size(); ++k) {
       const BlockConstraint& c = constraints_[k];
       const Mat3 outer = weights[k] * c.direction * c.direction.transpose();
+      for_pairs(c, [&](int i, int j) { blocks_[*block++] += c.weight[i] * c.weight[j] * outer; });
+    }
+    auto slot = slot_.begin();
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
       for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-          if (c.vertex[i] >= c.vertex[j] && c.weight[i] != 0 && c.weight[j] != 0) {
-            add(c.vertex[i], c.vertex[j], c.weight[i] * c.weight[j] * outer);
-          }
+        for (int j = 0; j < (is_diagonal_[k] ? i + 1 : 3); ++j) {
+          **slot++ = blocks_[k](i, j);
         }
       }
     }
-    Sparse matrix(size_, size_);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    return matrix;
+    return matrix_;
   }
 
   [[nodiscard]] Vector times_hessian(const Vector& x) const {
@@ -179,6 +228,12 @@ private:
   double slack_;
   Eigen::Index size_;
   Sparse hessian_;
+  Sparse matrix_; // of the Newton steps, made anew for each
+  std::vector<Mat3> blocks_;
+  std::vector<bool> is_diagonal_;
+  std::vector<double*> slot_; // in matrix_, for the entries of the blocks in turn
+  std::vector<Index> term_block_;
+  std::vector<Index> constraint_block_;
   Vector gradient_;
   Factor factor_;
 };

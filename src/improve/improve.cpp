@@ -1,5 +1,6 @@
 #include "improve/improve.h"
 
+#include "improve/refine.h"
 #include "improve/relax.h"
 #include "improve/simplify.h"
 #include "mesh/measures.h"
@@ -7,47 +8,186 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <vector>
 
 namespace cagewright {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Vertices that a cage like this one may have: a collapse takes a vertex and two faces.
+std::size_t vertex_budget(TriangleView start, const ImproveOptions& options) {
+  std::size_t budget = start.positions.size();
+  if (options.vertices > 0) {
+    budget = std::min(budget, static_cast<std::size_t>(options.vertices));
+  }
+  const std::size_t faces = start.triangles.size();
+  if (options.faces > 0 && faces > static_cast<std::size_t>(options.faces)) {
+    const std::size_t collapses = (faces - static_cast<std::size_t>(options.faces) + 1) / 2;
+    budget = std::min(budget, start.positions.size() - std::min(start.positions.size(), collapses));
+  }
+  constexpr std::size_t tetrahedron = 4;
+  return std::max(budget, tetrahedron);
+}
+
+ObjectiveWeights weights_for(TriangleView start, const ImproveOptions& options,
+                             std::size_t budget) {
+  ObjectiveWeights weights;
+  weights.square = options.square;
+  weights.shape = options.shape;
+  weights.typical_area = surface_area(start) / (2.0 * static_cast<double>(budget));
+  return weights;
+}
+
+// The model with a triangle without extent for every vertex that no triangle uses: it must be
+// inside too.
+TriangleMesh with_strays(TriangleView model) {
+  TriangleMesh result{{model.positions.begin(), model.positions.end()},
+                      {model.triangles.begin(), model.triangles.end()}};
+  std::vector<bool> used(model.positions.size(), false);
+  for (const Triangle& t : model.triangles) {
+    used[t[0]] = used[t[1]] = used[t[2]] = true;
+  }
+  for (Index v = 0; v < used.size(); ++v) {
+    if (!used[v]) {
+      result.triangles.push_back({v, v, v});
+    }
+  }
+  return result;
+}
+
+class Improvement {
+public:
+  Improvement(TriangleView start, TriangleView model, const ImproveOptions& options)
+      : options_(options), budget_(vertex_budget(start, options)), surface_(model),
+        guard_(surface_, options.clearance * surface_.diagonal),
+        objective_(surface_, weights_for(start, options, budget_)), cage_(start),
+        most_valence_(static_cast<std::size_t>(options.most_valence)) {}
+
+  Result<Improved> run(const Progress& progress) {
+    const Clock::time_point begin = Clock::now();
+    simplify_to_budget(progress.part(0, 0.4));
+    if (progress.cancelled()) {
+      return Error::cancelled();
+    }
+    Improved result;
+    result.report.simplify_seconds = seconds_since(begin);
+    const Clock::time_point middle = Clock::now();
+    const double value = refine(progress.part(0.4, 1));
+    if (progress.cancelled()) {
+      return Error::cancelled();
+    }
+    result.cage = cage_.mesh.compact();
+    result.report.refine_seconds = seconds_since(middle);
+    result.report.objective = value / std::pow(surface_.diagonal, 3);
+    result.report.reached = cage_.mesh.vertex_count() <= budget_;
+    if (!result.report.reached) {
+      result.report.why_not =
+          "no edge of the cage can be collapsed any more without coming nearer to the model than "
+          "the clearance, or crossing itself";
+    }
+    return result;
+  }
+
+private:
+  void simplify_to_budget(const Progress& progress) {
+    const double careful = options_.careful_from * static_cast<double>(budget_);
+    reduce(Placement::outside_patch, std::max(budget_, static_cast<std::size_t>(careful)),
+           progress.part(0, 0.2));
+    reduce(Placement::clear_of_model, budget_, progress.part(0.2, 1));
+    // A cage that is stuck may have grown into its own way: tightened, it often goes on.
+    constexpr int attempts = 3;
+    for (int i = 0; i < attempts && over_budget() && !progress.cancelled(); ++i) {
+      const std::size_t before = cage_.mesh.vertex_count();
+      relax_steps(4, Progress());
+      most_valence_ += 2;
+      reduce(Placement::clear_of_model, budget_, Progress());
+      if (cage_.mesh.vertex_count() == before) {
+        break;
+      }
+    }
+  }
+
+  // Tightens the cage, and moves vertices to where they pay: splits where a new vertex helps most,
+  // then collapses what costs least. \returns the objective
+  double refine(const Progress& progress) {
+    double best = settle(8, progress.part(0, 0.4));
+    WorkingCage kept = cage_;
+    const std::size_t count = std::max(budget_, cage_.mesh.vertex_count());
+    for (int round = 0; round < options_.rounds && !progress.cancelled(); ++round) {
+      const Progress part = progress.part(0.4 + 0.6 * round / options_.rounds,
+                                          0.4 + 0.6 * (round + 1) / options_.rounds);
+      split_edges(cage_, guard_, objective_, std::max<std::size_t>(4, count / 6), most_valence_);
+      flip_edges(cage_, guard_, objective_, most_valence_);
+      relax_steps(2, part.part(0, 0.2));
+      reduce(Placement::clear_of_model, count, part.part(0.2, 0.4));
+      const double value = settle(5, part.part(0.4, 1));
+      if (cage_.mesh.vertex_count() > count || value >= best) {
+        break;
+      }
+      constexpr double worth_another_round = 0.998;
+      const bool last = value > worth_another_round * best;
+      best = value;
+      kept = cage_;
+      if (last) {
+        break;
+      }
+    }
+    cage_ = std::move(kept);
+    return best;
+  }
+
+  [[nodiscard]] bool over_budget() const { return cage_.mesh.vertex_count() > budget_; }
+
+  void reduce(Placement placement, std::size_t vertices, const Progress& progress) {
+    simplify(cage_, guard_, objective_,
+             {.vertices = vertices, .placement = placement, .most_valence = most_valence_},
+             progress);
+  }
+
+  double relax_steps(int steps, const Progress& progress) {
+    return relax(cage_, guard_, objective_, {.steps = steps}, progress);
+  }
+
+  double settle(int steps, const Progress& progress) {
+    flip_edges(cage_, guard_, objective_, most_valence_);
+    relax_steps(steps / 2, progress.part(0, 0.5));
+    flip_edges(cage_, guard_, objective_, most_valence_);
+    return relax_steps(steps - steps / 2, progress.part(0.5, 1));
+  }
+
+  ImproveOptions options_;
+  std::size_t budget_;
+  ModelSurface surface_;
+  Guard guard_;
+  Objective objective_;
+  WorkingCage cage_;
+  std::size_t most_valence_;
+};
+
+} // namespace
 
 Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOptions& options,
                          const Progress& progress) {
   if (start.triangles.empty()) {
     return Error{ErrorCode::invalid_cage, "the cage to start from has no faces"};
   }
-  const ModelSurface surface(model);
-  const Guard guard(surface, options.clearance * surface.diagonal);
-  std::size_t target = 4;
-  if (options.vertices > 0) {
-    target = static_cast<std::size_t>(options.vertices);
+  if (model.positions.empty()) {
+    return Error{ErrorCode::unfit_model, "the model has no vertices"};
   }
-  ObjectiveWeights weights;
-  weights.square = options.square;
-  weights.shape = options.shape;
-  weights.typical_area = surface_area(start) / (2.0 * static_cast<double>(target));
-  const Objective objective(surface, weights);
-  WorkingCage cage(start);
-  const auto t0 = std::chrono::steady_clock::now();
-  SimplifyOptions simple;
-  simple.most_valence = static_cast<std::size_t>(options.most_valence);
-  simple.placement = Placement::outside_patch;
-  simple.vertices = 5 * target;
-  simplify(cage, guard, objective, simple, progress);
-  const auto t1 = std::chrono::steady_clock::now();
-  simple.placement = Placement::clear_of_model;
-  simple.vertices = target;
-  simplify(cage, guard, objective, simple, progress);
-  RelaxOptions rel;
-  rel.steps = options.rounds;
-  relax(cage, guard, objective, rel, progress);
-  const auto t2 = std::chrono::steady_clock::now();
-  Improved result;
-  result.cage = cage.mesh.compact();
-  result.report.simplify_seconds = std::chrono::duration<double>(t1 - t0).count();
-  result.report.refine_seconds = std::chrono::duration<double>(t2 - t1).count();
-  result.report.reached = cage.mesh.vertex_count() <= target;
-  result.report.objective = objective.total(cage.mesh) / std::pow(surface.diagonal, 3);
-  return result;
+  if (!(options.clearance > 0 && options.clearance < 1)) {
+    return Error{ErrorCode::invalid_option, "the clearance must be above 0 and below 1"};
+  }
+  if (options.vertices < 0 || options.faces < 0 || options.rounds < 0 || options.most_valence < 5 ||
+      !(options.square >= 0) || !(options.shape >= 0) || !(options.careful_from >= 1)) {
+    return Error{ErrorCode::invalid_option, "an option of the improvement is out of its range"};
+  }
+  return Improvement(start, with_strays(model), options).run(progress);
 }
 
 } // namespace cagewright

@@ -16,12 +16,14 @@ struct ImproveOptions {
   /// Least distance from every face of the cage to the model, in diagonals of the model's box. The
   /// start must keep it.
   double clearance = 0.002;
-  int most_valence = 10;
-  /// How often the cage is refined and simplified again to move vertices to where they pay.
-  int rounds = 4;
-  /// Weight of large gaps and of good shapes: see ObjectiveWeights.
-  double square = 20;
-  double shape = 3e-4;
+  int most_valence = 10; ///< faces at a vertex, unless the start has more or the budget needs more
+  /// How often the cage is refined and simplified again, to move vertices to where they pay.
+  int rounds = 2;
+  double square = 20;  ///< weight of large gaps: see ObjectiveWeights
+  double shape = 3e-4; ///< weight of well shaped faces: see ObjectiveWeights
+  /// How many times its final number of vertices the cage has when the quick way of simplifying it,
+  /// which lets it grow, gives way to the careful one.
+  double careful_from = 4;
 };
 
 struct ImproveReport {
@@ -43,8 +45,8 @@ struct Improved {
 /// and keeps the clearance: so does the result, because no change is made that was not checked. If
 /// the budget cannot be met the smallest cage found is returned, and the report says why.
 ///
-/// Errors: invalid_option, invalid_cage (the start has no faces), cancelled. The same result on any
-/// number of threads.
+/// Errors: invalid_option, invalid_cage (the start has no faces), unfit_model (the model has no
+/// vertices), cancelled. The same result on any number of threads.
 Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOptions& options = {},
                          const Progress& progress = {});
 

@@ -61,7 +61,7 @@ double Objective::face(const Corners& t) const {
   double sum = 0;
   for (const Node& node : rule) {
     const Vec3 p = node.at[0] * t[0] + node.at[1] * t[1] + node.at[2] * t[2];
-    sum += node.weight * gap(model_->tree.nearest(p).distance);
+    sum += node.weight * gap(nearest(p).distance);
   }
   const double x = shape_defect(t);
   return triangle_area(t) * sum + shape_weight() * x * x;

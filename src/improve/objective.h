@@ -35,6 +35,12 @@ public:
     return weights_.shape * diagonal() * weights_.typical_area;
   }
 
+  /// The point of the model nearest to p, or one nearly as near.
+  [[nodiscard]] SurfaceTree::Nearest nearest(const Vec3& p) const {
+    constexpr double error = 0.03;
+    return model_->tree.nearest(p, std::numeric_limits<double>::infinity(), error);
+  }
+
   /// A face's own part: the integral of the gap, by six nearest points, and the shape.
   [[nodiscard]] double face(const Corners& t) const;
 

@@ -133,7 +133,7 @@ private:
     for (int k = 0; k < 3; ++k) {
       const double share = k == 0 ? 2.0 / 3 : 1.0 / 6;
       const Vec3 p = (t[0] + t[1] + t[2]) / 6 + t[k] / 2;
-      const SurfaceTree::Nearest near = objective_.model().tree.nearest(p);
+      const SurfaceTree::Nearest near = objective_.nearest(p);
       const double d = near.distance;
       mean += objective_.gap(d) / 3;
       if (d > 0) {

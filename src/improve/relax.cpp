@@ -160,7 +160,7 @@ private:
         share[k] = s % 3 == k ? 1.0 / 3 + 2 * spread / 3 : 1.0 / 3 - spread / 3;
       }
       const Vec3 p = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
-      const SurfaceTree::Nearest near = objective_.model().tree.nearest(p);
+      const SurfaceTree::Nearest near = objective_.nearest(p);
       const double d = near.distance;
       mean += objective_.gap(d) / 6;
       if (!(d > 0)) {

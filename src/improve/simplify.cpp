@@ -36,8 +36,10 @@ public:
         stamps_(cage.mesh.vertex_end(), 0), failed_(cage.mesh.vertex_end()) {}
 
   bool run(const Progress& progress) {
-    offer(all_edges());
     const std::size_t start = cage_.mesh.vertex_count();
+    if (start > options_.vertices && !progress.cancelled()) {
+      offer(all_edges());
+    }
     while (cage_.mesh.vertex_count() > options_.vertices) {
       if (progress.cancelled()) {
         return false;

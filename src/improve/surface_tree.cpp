@@ -55,6 +55,28 @@ public:
     return false;
   }
 
+  // The same for a triangle.
+  [[nodiscard]] bool beyond(const Corners& t, double distance) const {
+    for (int k = 0; k < 3; ++k) {
+      const double low = std::min({t[0][k], t[1][k], t[2][k]});
+      const double high = std::max({t[0][k], t[1][k], t[2][k]});
+      if (low - distance > center_[k] + half_[k] || high + distance < center_[k] - half_[k]) {
+        return true;
+      }
+    }
+    for (int i = 0; i < count_; ++i) {
+      const Axis& axis = axes_[i];
+      const double a = axis.normal.dot(t[0]);
+      const double b = axis.normal.dot(t[1]);
+      const double c = axis.normal.dot(t[2]);
+      if (std::min({a, b, c}) - distance > axis.high ||
+          (axis.two_sided && std::max({a, b, c}) + distance < axis.low)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
 private:
   struct Axis {
     Vec3 normal;
@@ -180,8 +202,9 @@ void SurfaceTree::build(std::span<const Corners> corners) {
   }
 }
 
-SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within) const {
+SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double error) const {
   Nearest best;
+  const double factor = (1 + error) * (1 + error);
   double bound = within * within;
   struct Entry {
     Index node;
@@ -194,7 +217,7 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within) const {
   }
   while (top > 0) {
     const Entry entry = stack[--top];
-    if (entry.squared >= bound) {
+    if (entry.squared * factor >= bound) {
       continue;
     }
     const Node& node = nodes_[entry.node];
@@ -234,6 +257,9 @@ std::optional<NearestPair> SurfaceTree::too_near(const Corners& triangle, double
       continue;
     }
     for (Index i = node.first; i < node.first + node.count; ++i) {
+      if (bound.beyond(triangles_[i], distance)) {
+        continue;
+      }
       const NearestPair pair = nearest_of_triangles(triangle, triangles_[i]);
       if (pair.squared < distance * distance) {
         return pair;
@@ -261,6 +287,9 @@ std::optional<NearestPair> SurfaceTree::nearest_to(const Corners& triangle, doub
       continue;
     }
     for (Index i = node.first; i < node.first + node.count; ++i) {
+      if (bound.beyond(triangles_[i], within)) {
+        continue;
+      }
       const NearestPair pair = nearest_of_triangles(triangle, triangles_[i]);
       if (pair.squared < within * within) {
         best = pair;

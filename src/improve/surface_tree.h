@@ -33,9 +33,11 @@ public:
   };
 
   /// The point of the model nearest to p, if one is nearer than `within`; else the distance is
-  /// infinite.
+  /// infinite. With an `error` the distance may be too large by this share, which is much quicker
+  /// far from the model.
   [[nodiscard]] Nearest nearest(const Vec3& p,
-                                double within = std::numeric_limits<double>::infinity()) const;
+                                double within = std::numeric_limits<double>::infinity(),
+                                double error = 0) const;
 
   /// A pair of points of the triangle (first) and of the model (second) nearer than `distance`,
   /// if there is one: any, not the nearest. None: the triangle keeps this distance everywhere.

@@ -1,0 +1,163 @@
+#include "improve/refine.h"
+
+#include "core/parallel.h"
+#include "improve/placement.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+namespace cagewright {
+
+namespace {
+
+struct Change {
+  double gain = 0; // by how much the objective falls
+  Patch patch;
+};
+
+std::vector<std::array<Index, 2>> edges_of(const CageMesh& cage) {
+  std::vector<std::array<Index, 2>> edges;
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    if (cage.has_face(f)) {
+      const Triangle& t = cage.face(f);
+      for (int i = 0; i < 3; ++i) {
+        if (t[i] < t[(i + 1) % 3]) {
+          edges.push_back({t[i], t[(i + 1) % 3]});
+        }
+      }
+    }
+  }
+  return edges;
+}
+
+// The changes that lower the objective, the best first, evaluated in parallel.
+template <class Evaluate>
+std::vector<Change> ranked(const CageMesh& cage, const Evaluate& evaluate) {
+  const std::vector<std::array<Index, 2>> edges = edges_of(cage);
+  std::vector<std::optional<Change>> all(edges.size());
+  parallel_for(0, edges.size(), 1,
+               [&](std::size_t i) { all[i] = evaluate(edges[i][0], edges[i][1]); });
+  std::vector<Change> good;
+  for (std::optional<Change>& change : all) {
+    if (change && change->gain > 0) {
+      good.push_back(std::move(*change));
+    }
+  }
+  std::stable_sort(good.begin(), good.end(),
+                   [](const Change& a, const Change& b) { return a.gain > b.gain; });
+  return good;
+}
+
+// The faces round the patch's faces, itself included: what a change there could make stale.
+std::vector<Index> surroundings(const CageMesh& cage, const Patch& patch) {
+  std::vector<Index> faces;
+  for (const Index f : patch.removed) {
+    for (const Index v : cage.face(f)) {
+      faces.insert(faces.end(), cage.around(v).begin(), cage.around(v).end());
+    }
+  }
+  return faces;
+}
+
+// Makes the changes in order, but none in the surroundings of another.
+std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change>& changes,
+                 std::size_t most) {
+  std::vector<bool> touched(2 * static_cast<std::size_t>(cage.mesh.face_end()) + 4 * most, false);
+  std::size_t made = 0;
+  for (const Change& change : changes) {
+    if (made == most) {
+      break;
+    }
+    Patch patch = change.patch;
+    const bool stale = std::any_of(patch.removed.begin(), patch.removed.end(),
+                                   [&](Index f) { return touched[f]; });
+    if (stale) {
+      continue;
+    }
+    if (patch.vertex != no_index && patch.vertex != cage.mesh.vertex_end()) {
+      const Index renamed = cage.mesh.vertex_end(); // the first split took the number
+      for (Triangle& t : patch.added) {
+        std::replace(t.begin(), t.end(), patch.vertex, renamed);
+      }
+      patch.vertex = renamed;
+    }
+    if (guard.crosses(cage.mesh, cage.boxes, patch) || guard.loses_a_part(cage.mesh, patch)) {
+      continue;
+    }
+    for (const Index f : surroundings(cage.mesh, patch)) {
+      touched[f] = true;
+    }
+    cage.apply(patch);
+    for (const Triangle& t : patch.added) {
+      for (const Index v : t) {
+        for (const Index f : cage.mesh.around(v)) {
+          touched[f] = true;
+        }
+      }
+    }
+    ++made;
+  }
+  return made;
+}
+
+} // namespace
+
+std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
+                       std::size_t most_valence) {
+  std::size_t total = 0;
+  for (;;) {
+    const CageMesh& mesh = cage.mesh;
+    const std::vector<Change> changes = ranked(mesh, [&](Index a, Index b) {
+      std::optional<Change> change;
+      std::optional<Patch> patch = mesh.flip(a, b);
+      if (!patch) {
+        return change;
+      }
+      for (const Index f : patch->removed) {
+        if (mesh.around(mesh.corner_opposite(f, a, b)).size() >= most_valence) {
+          return change;
+        }
+      }
+      if (!keeps_shape(mesh, *patch)) {
+        return change;
+      }
+      const double gain = -objective.change(mesh, *patch);
+      if (gain > 0 && !guard.too_near(mesh, *patch)) {
+        change = Change{gain, std::move(*patch)};
+      }
+      return change;
+    });
+    const std::size_t made = make(cage, guard, changes, changes.size());
+    total += made;
+    if (made == 0) {
+      return total;
+    }
+  }
+}
+
+std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
+                        std::size_t count, std::size_t most_valence) {
+  const CageMesh& mesh = cage.mesh;
+  const std::vector<Change> changes = ranked(mesh, [&](Index a, Index b) {
+    std::optional<Change> change;
+    Patch patch = mesh.split(a, b);
+    for (const Index f : patch.removed) {
+      if (mesh.around(mesh.corner_opposite(f, a, b)).size() >= most_valence) {
+        return change;
+      }
+    }
+    const std::optional<Vec3> position = place_clear_of_model(guard, objective, mesh, patch);
+    if (!position) {
+      return change;
+    }
+    patch.position = *position;
+    if (keeps_shape(mesh, patch)) {
+      change = Change{-objective.change(mesh, patch), std::move(patch)};
+    }
+    return change;
+  });
+  return make(cage, guard, changes, count);
+}
+
+} // namespace cagewright

@@ -1,0 +1,19 @@
+/// \file
+/// Changes of a cage's connectivity that do not lower its number of vertices.
+#pragma once
+
+#include "improve/simplify.h"
+
+namespace cagewright {
+
+/// Flips edges where that lowers the objective, the best first, until none is left that does. The
+/// cage stays valid throughout. \returns how many
+std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
+                       std::size_t most_valence);
+
+/// Splits up to `count` edges where a new vertex lowers the objective most, no two of them in
+/// neighbouring faces. The cage stays valid throughout. \returns how many
+std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
+                        std::size_t count, std::size_t most_valence);
+
+} // namespace cagewright

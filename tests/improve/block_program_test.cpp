@@ -1,0 +1,109 @@
+#include "improve/block_program.h"
+
+#include "core/random.h"
+
+#include <gtest/gtest.h>
+
+namespace cagewright {
+namespace {
+
+// Points on a chain, each tied to its place and to the next point, in random directions.
+BlockQuadratic random_chain(Random& random, Index count) {
+  BlockQuadratic quadratic(count);
+  const auto direction = [&] {
+    return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  };
+  for (Index v = 0; v < count; ++v) {
+    quadratic.gradient[v] = direction();
+    quadratic.terms.push_back({v, v, Mat3::Identity()});
+    if (v > 0) {
+      const Vec3 d = direction();
+      quadratic.terms.push_back({v, v, d * d.transpose()});
+      quadratic.terms.push_back({v - 1, v - 1, d * d.transpose()});
+      quadratic.terms.push_back({v, v - 1, -d * d.transpose()});
+    }
+  }
+  return quadratic;
+}
+
+// H x + g
+std::vector<Vec3> slope(const BlockQuadratic& quadratic, const std::vector<Vec3>& x) {
+  std::vector<Vec3> result = quadratic.gradient;
+  for (const BlockQuadratic::Term& t : quadratic.terms) {
+    result[t.row] += t.block * x[t.column];
+    if (t.row != t.column) {
+      result[t.column] += t.block.transpose() * x[t.row];
+    }
+  }
+  return result;
+}
+
+TEST(BlockProgram, WithoutConstraintsTheSlopeVanishes) {
+  Random random(1);
+  const BlockQuadratic quadratic = random_chain(random, 20);
+  const std::vector<Vec3> x = minimize(quadratic, {}, 1e-9);
+  for (const Vec3& g : slope(quadratic, x)) {
+    EXPECT_LT(g.norm(), 1e-6);
+  }
+}
+
+TEST(BlockProgram, TheSlopeIsMadeOfActiveConstraints) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Random random(seed);
+    const BlockQuadratic quadratic = random_chain(random, 12);
+    std::vector<BlockConstraint> constraints;
+    for (Index v = 0; v + 2 < 12; ++v) {
+      const Vec3 d =
+          Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+      constraints.push_back({{v, v + 1, v + 2}, {0.5, 0.3, 0.2}, d, random.uniform(-0.3, 0.1)});
+    }
+    const std::vector<Vec3> x = minimize(quadratic, constraints, 1e-9);
+    double best = 0;
+    for (Index v = 0; v < 12; ++v) {
+      best += quadratic.gradient[v].dot(x[v]);
+    }
+    const std::vector<Vec3> g = slope(quadratic, x);
+    // Every way that the constraints allow leads up.
+    for (const BlockConstraint& c : constraints) {
+      const auto value = [&](const std::vector<Vec3>& y) {
+        double sum = 0;
+        for (int i = 0; i < 3; ++i) {
+          sum += c.weight[i] * c.direction.dot(y[c.vertex[i]]);
+        }
+        return sum;
+      };
+      EXPECT_GE(value(x), c.bound - 1e-5);
+    }
+    for (int trial = 0; trial < 200; ++trial) {
+      std::vector<Vec3> y = x;
+      for (Vec3& p : y) {
+        p += 0.01 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      }
+      bool allowed = true;
+      for (const BlockConstraint& c : constraints) {
+        double sum = 0;
+        for (int i = 0; i < 3; ++i) {
+          sum += c.weight[i] * c.direction.dot(y[c.vertex[i]]);
+        }
+        allowed = allowed && sum >= c.bound;
+      }
+      double rise = 0;
+      for (Index v = 0; v < 12; ++v) {
+        rise += g[v].dot(y[v] - x[v]);
+      }
+      EXPECT_TRUE(!allowed || rise > -1e-4) << "seed " << seed;
+    }
+  }
+}
+
+TEST(BlockProgram, ComesAsNearAsItCanToConstraintsThatContradict) {
+  BlockQuadratic quadratic(1);
+  quadratic.terms.push_back({0, 0, Mat3::Identity()});
+  const std::vector<BlockConstraint> constraints = {{{0, 0, 0}, {1, 0, 0}, Vec3::UnitX(), 1},
+                                                    {{0, 0, 0}, {1, 0, 0}, -Vec3::UnitX(), 1}};
+  const std::vector<Vec3> x = minimize(quadratic, constraints, 1e-6);
+  EXPECT_NEAR(x[0].x(), 0, 1e-3); // 1 <= x <= -1
+}
+
+} // namespace
+} // namespace cagewright

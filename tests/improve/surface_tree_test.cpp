@@ -1,0 +1,123 @@
+#include "improve/surface_tree.h"
+
+#include "core/random.h"
+#include "mesh/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cagewright {
+namespace {
+
+Vec3 random_vector(Random& random) {
+  return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+}
+
+// Triangles of all sizes, some without area.
+TriangleMesh soup(std::uint64_t seed) {
+  Random random(seed);
+  TriangleMesh mesh;
+  for (Index t = 0; t < 60; ++t) {
+    const Vec3 at = random_vector(random);
+    const double size = random.uniform(0, 0.4);
+    for (int i = 0; i < 3; ++i) {
+      mesh.positions.push_back(t % 9 == 0 ? at : Vec3(at + size * random_vector(random)));
+    }
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return mesh;
+}
+
+Corners corners(const TriangleMesh& mesh, std::size_t f) {
+  const Triangle& t = mesh.triangles[f];
+  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+}
+
+TEST(SurfaceTree, FindsTheNearestPoint) {
+  const TriangleMesh mesh = soup(1);
+  const SurfaceTree tree(mesh);
+  Random random(2);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Vec3 p = 2 * random_vector(random);
+    double least = 1e9;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      least = std::min(least, (nearest_in_triangle(p, corners(mesh, f)) - p).norm());
+    }
+    EXPECT_NEAR(tree.nearest(p).distance, least, 1e-12);
+    EXPECT_LE(tree.nearest(p, 10, 0.05).distance, 1.05 * least + 1e-12);
+    EXPECT_EQ(std::isfinite(tree.nearest(p, 0.2).distance), least < 0.2);
+  }
+}
+
+TEST(SurfaceTree, KnowsWhatIsTooNear) {
+  const TriangleMesh mesh = soup(3);
+  const SurfaceTree tree(mesh);
+  Random random(4);
+  int near = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const Vec3 at = 1.3 * random_vector(random);
+    const Corners t = {at, at + 0.5 * random_vector(random), at + 0.5 * random_vector(random)};
+    double least = 1e9;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      least = std::min(least, nearest_of_triangles(t, corners(mesh, f)).squared);
+    }
+    least = std::sqrt(least);
+    EXPECT_EQ(tree.too_near(t, 0.1).has_value(), least < 0.1);
+    const auto pair = tree.nearest_to(t, 0.2);
+    EXPECT_EQ(pair.has_value(), least < 0.2);
+    if (pair) {
+      EXPECT_NEAR(std::sqrt(pair->squared), least, 1e-12);
+      ++near;
+    }
+  }
+  EXPECT_GT(near, 30);
+  EXPECT_LT(near, 270);
+}
+
+TEST(SurfaceTree, FindsTheHighestPointBetweenThreeSides) {
+  const TriangleMesh mesh = make_icosphere(2);
+  const SurfaceTree tree(mesh);
+  Random random(6);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Vec3 n = random_vector(random).normalized();
+    const HalfSpace plane{n, random.uniform(-1, 1)};
+    std::array<HalfSpace, 3> sides;
+    for (HalfSpace& s : sides) {
+      s = {random_vector(random).normalized(), random.uniform(-0.2, 0.7)};
+    }
+    const auto top = tree.highest(plane, sides, -0.3, 0.2);
+    double sampled = -0.3;
+    for (int sample = 0; sample < 2000; ++sample) {
+      const Corners t = corners(mesh, random.below(mesh.triangles.size()));
+      const double a = random.uniform();
+      const double b = random.uniform(0, 1 - a);
+      const Vec3 p = t[0] + a * (t[1] - t[0]) + b * (t[2] - t[0]);
+      const bool inside = std::all_of(sides.begin(), sides.end(),
+                                      [&](const HalfSpace& s) { return s.above(p) <= 0; });
+      if (inside && plane.above(p) <= 0.2) {
+        sampled = std::max(sampled, plane.above(p));
+      }
+    }
+    if (top) {
+      EXPECT_GE(top->height, sampled - 1e-12);
+      EXPECT_NEAR(plane.above(top->point), top->height, 1e-12);
+      for (const HalfSpace& s : sides) {
+        EXPECT_LE(s.above(top->point), 1e-12);
+      }
+      EXPECT_LT(tree.nearest(top->point).distance, 1e-12);
+    } else {
+      EXPECT_EQ(sampled, -0.3);
+    }
+  }
+}
+
+TEST(SurfaceTree, OfNothingFindsNothing) {
+  const SurfaceTree tree{TriangleView()};
+  EXPECT_FALSE(std::isfinite(tree.nearest(Vec3::Zero()).distance));
+  EXPECT_FALSE(tree.too_near({Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()}, 1));
+}
+
+} // namespace
+} // namespace cagewright
