@@ -74,7 +74,7 @@ TEST(RewritePositions, GivesTheFileItselfForItsOwnPositions) {
     ASSERT_TRUE(mesh);
     std::string expected = sample.bytes;
     if (sample.format == MeshFormat::obj) {
-      expected.replace(expected.find("1e0"), 3, "1");
+      expected.erase(expected.find("e0"), 2); // 1e0 becomes 1
     }
     EXPECT_EQ(rewritten("a", sample.bytes, mesh->positions), expected) << sample.name;
   }
