@@ -1,10 +1,278 @@
 #include "session.h"
 
+#include "exact/predicates.h"
+#include "io/atomic_file.h"
+#include "io/read_mesh.h"
+#include "mesh/measures.h"
+#include "mesh/topology.h"
+#include "mesh/triangulate.h"
+#include "mesh/weld.h"
+#include "obb/minimum_box.h"
+#include "obb/principal_axes.h"
+#include "validate/model_volume.h"
+#include "validate/self_crossings.h"
+#include "voxel/point_set.h"
+#include "voxel/voxelize.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace cagewright::cli {
+namespace {
+
+struct Options {
+  std::string model;
+  std::string json;
+  VoxelizeOptions voxels;
+};
+
+struct NamedBox {
+  const char* key;   // in JSON
+  const char* title; // for people
+  OrientedBox box;
+};
+
+struct Info {
+  std::size_t vertices = 0;
+  std::size_t distinct_positions = 0;
+  std::map<std::size_t, std::size_t> faces_by_sides;
+  TopologyReport topology; // after merging equal positions
+  std::size_t unused_vertices = 0;
+  std::size_t degenerate_triangles = 0; // without area, or naming a vertex twice
+  std::size_t self_crossings = 0;
+  double diagonal = 0;
+  double area = 0;
+  ModelVolume volume;
+  std::vector<NamedBox> boxes;
+
+  [[nodiscard]] std::size_t faces() const {
+    std::size_t sum = 0;
+    for (const auto& [sides, count] : faces_by_sides) {
+      sum += count;
+    }
+    return sum;
+  }
+};
+
+std::size_t count_degenerate(TriangleView mesh) {
+  return static_cast<std::size_t>(
+      std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+        return is_degenerate(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
+      }));
+}
+
+/// A model without extent has no voxels: its fourth box is left out.
+std::vector<NamedBox> boxes_of(TriangleView mesh, const VoxelizeOptions& voxels,
+                               const Progress& progress) {
+  std::vector<NamedBox> boxes = {
+      {"axis_aligned", "axis-aligned", box_in_frame(Mat3::Identity(), mesh.positions)},
+      {"pca_vertices", "PCA of the vertices", pca_box(mesh.positions)}};
+  if (const auto grid = voxelize(mesh, boxes.back().box, voxels, progress)) {
+    boxes.push_back({"pca_points", "PCA of vertices and voxels", pca_box(point_set(mesh, *grid))});
+  }
+  boxes.push_back({"minimum", "minimum volume", minimum_box(mesh.positions)});
+  return boxes;
+}
+
+Result<Info> describe(const PolygonMesh& model, const VoxelizeOptions& voxels,
+                      const Progress& progress) {
+  const TriangleMesh triangles = to_triangle_mesh(model);
+  const PolygonMesh welded = weld(model);
+  Info info;
+  info.vertices = model.positions.size();
+  info.distinct_positions = welded.positions.size();
+  for (std::size_t f = 0; f < model.face_count(); ++f) {
+    ++info.faces_by_sides[model.face(f).size()];
+  }
+  info.topology = topology(welded);
+  info.unused_vertices = topology(model).unused_vertices.size();
+  info.degenerate_triangles = count_degenerate(triangles);
+  progress(0.2, "self-intersections");
+  const auto crossings = count_self_crossings(triangles, progress.part(0.2, 0.6));
+  if (!crossings) {
+    return crossings.error();
+  }
+  info.self_crossings = *crossings;
+  info.diagonal = diagonal(triangles.positions);
+  info.area = surface_area(triangles);
+  info.volume = model_volume(triangles);
+  progress(0.6, "boxes");
+  info.boxes = boxes_of(triangles, voxels, progress.part(0.6, 1));
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
+  progress(1, "done");
+  return info;
+}
+
+std::string plural(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string describe_faces(const Info& info) {
+  std::string kinds;
+  for (const auto& [sides, count] : info.faces_by_sides) {
+    const std::string name = sides == 3   ? plural(count, "triangle", "triangles")
+                             : sides == 4 ? plural(count, "quad", "quads")
+                                          : fmt::format("{} of {} sides", count, sides);
+    kinds += (kinds.empty() ? "" : ", ") + name;
+  }
+  return fmt::format("{}, {}: {}\n", plural(info.vertices, "vertex", "vertices"),
+                     plural(info.faces(), "face", "faces"), kinds);
+}
+
+std::string describe_topology(const Info& info) {
+  const TopologyReport& topology = info.topology;
+  std::string text =
+      fmt::format("With equal positions merged ({} left):\n", info.distinct_positions);
+  text += topology.is_closed()
+              ? "  closed\n"
+              : fmt::format("  open: {} in {}\n",
+                            plural(topology.boundary_edges.size(), "open edge", "open edges"),
+                            plural(topology.boundary_loops, "loop", "loops"));
+  text += topology.is_manifold()
+              ? "  manifold\n"
+              : fmt::format("  not manifold: {}, {}\n",
+                            plural(topology.nonmanifold_edges.size(), "edge of three or more faces",
+                                   "edges of three or more faces"),
+                            plural(topology.nonmanifold_vertices.size(), "pinched vertex",
+                                   "pinched vertices"));
+  text += topology.is_oriented()
+              ? "  consistently oriented\n"
+              : fmt::format("  not consistently oriented: {} between faces that disagree\n",
+                            plural(topology.inconsistent_edges.size(), "edge", "edges"));
+  text += fmt::format("  {}, genus {}\n", plural(topology.components, "component", "components"),
+                      topology.genus ? std::to_string(*topology.genus) : "not defined");
+  return text;
+}
+
+std::string describe_defects(const Info& info) {
+  std::string text;
+  const auto mention = [&](std::size_t count, const char* one, const char* many) {
+    if (count > 0) {
+      text += "  " + plural(count, one, many) + "\n";
+    }
+  };
+  mention(info.unused_vertices, "vertex that no face uses", "vertices that no face uses");
+  mention(info.degenerate_triangles, "triangle without area", "triangles without area");
+  mention(info.topology.duplicate_faces.size(), "face that repeats another",
+          "faces that repeat another");
+  text += info.self_crossings == 0
+              ? "  no self-intersections\n"
+              : fmt::format("  {} that cross (an edge of one passes through the inside of the "
+                            "other; pairs that share an edge not counted)\n",
+                            plural(info.self_crossings, "pair of triangles", "pairs of triangles"));
+  return text;
+}
+
+std::string describe_sizes(const Info& info) {
+  std::string text = fmt::format(
+      "Diagonal {:.6g}, area {:.6g}, volume {:.6g}{}\n", info.diagonal, info.area,
+      info.volume.value,
+      info.volume.method == VolumeMethod::sampled ? " (open or inconsistent: sampled)" : "");
+  text += "Boxes\n";
+  for (const auto& [key, title, box] : info.boxes) {
+    const Vec3 size = 2 * box.half;
+    text += fmt::format("  {:<28}{:.6g} x {:.6g} x {:.6g}, volume {:.6g}\n", title, size.x(),
+                        size.y(), size.z(), box.volume());
+  }
+  return text;
+}
+
+nlohmann::json to_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+nlohmann::json to_json(const OrientedBox& box) {
+  return {{"center", to_json(box.center)},
+          {"axes",
+           {to_json(Vec3(box.axes.col(0))), to_json(Vec3(box.axes.col(1))),
+            to_json(Vec3(box.axes.col(2)))}},
+          {"half", to_json(box.half)},
+          {"volume", box.volume()}};
+}
+
+nlohmann::json to_json(const Info& info) {
+  const TopologyReport& topology = info.topology;
+  nlohmann::json json = {{"vertices", info.vertices},
+                         {"distinct_positions", info.distinct_positions},
+                         {"faces", info.faces()},
+                         {"closed", topology.is_closed()},
+                         {"manifold", topology.is_manifold()},
+                         {"oriented", topology.is_oriented()},
+                         {"boundary_edges", topology.boundary_edges.size()},
+                         {"boundary_loops", topology.boundary_loops},
+                         {"nonmanifold_edges", topology.nonmanifold_edges.size()},
+                         {"nonmanifold_vertices", topology.nonmanifold_vertices.size()},
+                         {"inconsistent_edges", topology.inconsistent_edges.size()},
+                         {"components", topology.components},
+                         {"genus", nullptr},
+                         {"unused_vertices", info.unused_vertices},
+                         {"degenerate_triangles", info.degenerate_triangles},
+                         {"duplicate_faces", topology.duplicate_faces.size()},
+                         {"self_intersecting_pairs", info.self_crossings},
+                         {"diagonal", info.diagonal},
+                         {"area", info.area},
+                         {"volume", info.volume.value},
+                         {"volume_method", name_of(info.volume.method)}};
+  if (topology.genus) {
+    json["genus"] = *topology.genus;
+  }
+  for (const auto& [sides, count] : info.faces_by_sides) {
+    json["faces_by_sides"][std::to_string(sides)] = count;
+  }
+  for (const auto& [key, title, box] : info.boxes) {
+    json["boxes"][key] = to_json(box);
+  }
+  return json;
+}
+
+int run(const Options& options, const Session& session) {
+  const auto model = read_mesh(options.model);
+  if (!model) {
+    return fail(model.error());
+  }
+  const auto info = describe(*model, options.voxels, session.progress());
+  if (!info) {
+    return fail(info.error());
+  }
+  if (!options.json.empty()) {
+    const std::string json = to_json(*info).dump(2) + "\n";
+    if (const Status status = write_file_atomically(options.json, json); !status) {
+      return fail(status.error());
+    }
+  }
+  if (!session.quiet) {
+    const std::string text = describe_faces(*info) + describe_topology(*info) +
+                             describe_defects(*info) + describe_sizes(*info);
+    std::fputs(text.c_str(), stdout);
+  }
+  return done;
+}
+
+} // namespace
 
 void add_info(CLI::App& app, Session& session) {
-  CLI::App* command = app.add_subcommand("info", "Describe a model");
-  command->callback([&session] { session.run = [] { return done; }; });
+  CLI::App* command = app.add_subcommand("info", "Describe a model: counts, defects, sizes, boxes");
+  auto options = std::make_shared<Options>();
+  command->add_option("model", options->model, "The model")->required();
+  command->add_option("--json", options->json, "Write the same and more to this file as JSON");
+  command
+      ->add_option("--resolution", options->voxels.resolution,
+                   "Voxels along the longest axis, for the box of vertices and voxels")
+      ->check(CLI::Range(2, 4096));
+  command->callback([&session, options] {
+    session.run = [&session, options] { return run(*options, session); };
+  });
 }
 
 } // namespace cagewright::cli

@@ -32,14 +32,6 @@ std::vector<BoxContents> contents_of(const BoxTree& tree, const std::vector<int>
   return contents;
 }
 
-Registration boxes_as_they_are(const std::vector<BoxContents>& contents) {
-  Registration apart;
-  for (const BoxContents& content : contents) {
-    apart.solids.push_back(make_box(content.box.center, content.box.axes, content.box.half));
-  }
-  return apart;
-}
-
 TriangleMesh to_model(const BoxDecomposition& boxes, TriangleMesh cage) {
   for (Vec3& p : cage.positions) {
     p = boxes.to_model(p);
@@ -59,7 +51,7 @@ Result<Registration> joined_or_not(const std::vector<BoxContents>& contents,
                                    const BoxDecomposition& boxes, const GenerateOptions& options,
                                    const Progress& progress) {
   if (!options.registration) {
-    return boxes_as_they_are(contents);
+    return keep_apart(contents);
   }
   return register_boxes(in_grid_coordinates(boxes.grid), contents, {}, progress);
 }

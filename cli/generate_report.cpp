@@ -1,0 +1,150 @@
+#include "generate_report.h"
+
+#include "cage_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace cagewright::cli {
+namespace {
+
+nlohmann::json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+nlohmann::json to_json(const OrientedBox& box) {
+  return {{"center", to_json(box.center)},
+          {"axes", {to_json(Vec3(box.axes.col(0))), to_json(Vec3(box.axes.col(1))),
+                    to_json(Vec3(box.axes.col(2)))}},
+          {"half_lengths", to_json(box.half)},
+          {"volume", box.volume()}};
+}
+
+/// Lengths and areas of a box's cross-sections, from voxels to the model's unit.
+nlohmann::json to_json(const CrossSection& section, double voxel) {
+  const auto areas = [&](const std::vector<double>& f) {
+    std::vector<double> scaled(f);
+    for (double& area : scaled) {
+      area *= voxel * voxel;
+    }
+    return scaled;
+  };
+  return {{"axis", section.axis},
+          {"first", section.first * voxel},
+          {"step", section.step * voxel},
+          {"f", areas(section.area)},
+          {"f_smooth", areas(section.smooth)}};
+}
+
+nlohmann::json to_json(const Cut& cut, const BoxDecomposition& boxes) {
+  return {{"axis", cut.plane.axis},
+          {"offset", cut.plane.offset * boxes.voxel_size()},
+          {"point", to_json(boxes.to_model(cut.point))},
+          {"normal", to_json(Vec3(boxes.grid.axes * cut.normal))},
+          {"jump", cut.jump},
+          {"gain", cut.gain},
+          {"middle", cut.middle}};
+}
+
+nlohmann::json to_json(const BoxNode& node, int index, const BoxDecomposition& boxes) {
+  nlohmann::json j = to_json(boxes.to_model(node.box));
+  j["node"] = index;
+  j["parent"] = node.parent;
+  j["depth"] = node.depth;
+  j["children"] = node.children;
+  j["voxels"] = node.voxels.size();
+  j["stop"] = name_of(node.stop);
+  j["T1"] = node.prismatic_ratio;
+  j["T2"] = node.cube_ratio;
+  j["cross_sections"] = nlohmann::json::array();
+  for (const CrossSection& section : node.sections) {
+    j["cross_sections"].push_back(to_json(section, boxes.voxel_size()));
+  }
+  j["cut"] = node.cut ? to_json(*node.cut, boxes) : nlohmann::json();
+  return j;
+}
+
+nlohmann::json to_json(const std::vector<StageTime>& times) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const StageTime& time : times) {
+    j.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
+  }
+  return j;
+}
+
+nlohmann::json to_json(const Registration& registration) {
+  nlohmann::json j;
+  j["joints"] = registration.joints.size();
+  for (int verdict = 0; verdict < joint_verdicts; ++verdict) {
+    j["pairs_of_faces"][std::string(name_of(static_cast<JointVerdict>(verdict)))] =
+        registration.verdicts[static_cast<std::size_t>(verdict)];
+  }
+  return j;
+}
+
+int cuts_in(const BoxTree& tree) {
+  return static_cast<int>(std::count_if(tree.nodes.begin(), tree.nodes.end(),
+                                        [](const BoxNode& node) { return node.cut.has_value(); }));
+}
+
+std::string times_line(const std::vector<StageTime>& times) {
+  std::string line = "  time: ";
+  double total = 0;
+  for (const StageTime& time : times) {
+    line += fmt::format("{} {:.2f} s, ", time.stage, time.seconds);
+    total += time.seconds;
+  }
+  return line + fmt::format("together {:.2f} s\n", total);
+}
+
+std::string boxes_line(const BoxDecomposition& boxes, std::size_t count) {
+  return fmt::format("  {} boxes by {} cuts{}\n", count, cuts_in(boxes.tree),
+                     boxes.bridges > 0
+                         ? fmt::format("; {} bridges between pieces of the model", boxes.bridges)
+                         : "");
+}
+
+} // namespace
+
+nlohmann::json to_json(const BoxDecomposition& boxes, const std::vector<int>& cover) {
+  nlohmann::json j;
+  j["format"] = "cagewright-generate";
+  j["version"] = 1;
+  j["diagonal"] = boxes.frame.diagonal;
+  j["voxels"] = {{"size", boxes.voxel_size()},
+                 {"dims", boxes.grid.dims},
+                 {"feature", boxes.grid.count(VoxelKind::feature)},
+                 {"inner", boxes.grid.count(VoxelKind::inner)},
+                 {"bridges", boxes.bridges}};
+  j["tree"] = nlohmann::json::array();
+  for (std::size_t at = 0; at < boxes.tree.nodes.size(); ++at) {
+    j["tree"].push_back(to_json(boxes.tree.nodes[at], static_cast<int>(at), boxes));
+  }
+  j["boxes"] = cover;
+  j["times"] = to_json(boxes.times);
+  return j;
+}
+
+nlohmann::json to_json(const GeneratedCage& made, const CageMetrics& metrics) {
+  nlohmann::json j = to_json(made.boxes, made.leaves);
+  j["registration"] = to_json(made.registration);
+  j["cage"] = figures_as_json(metrics);
+  j["cage"]["valid"] = true; // generate_cage() returns no other
+  j["times"] = to_json(made.times);
+  return j;
+}
+
+std::string summary(const BoxDecomposition& boxes, const std::vector<int>& cover) {
+  return fmt::format("{} voxels ({} on the surface, {} inside)\n",
+                     boxes.grid.count(VoxelKind::feature) + boxes.grid.count(VoxelKind::inner),
+                     boxes.grid.count(VoxelKind::feature), boxes.grid.count(VoxelKind::inner)) +
+         boxes_line(boxes, cover.size()) + times_line(boxes.times);
+}
+
+std::string summary(const GeneratedCage& made, const CageMetrics& metrics) {
+  return "a valid cage\n" + boxes_line(made.boxes, made.leaves.size()) +
+         fmt::format("  {} pairs of neighbouring boxes joined at a common quad\n",
+                     made.registration.joints.size()) +
+         figures_as_text(metrics) + times_line(made.times);
+}
+
+} // namespace cagewright::cli
