@@ -1,0 +1,47 @@
+/// \file
+/// A cage of at most so many vertices.
+#pragma once
+
+#include "cage/generate.h"
+#include "improve/improve.h"
+
+#include <optional>
+#include <vector>
+
+namespace cagewright {
+
+/// What a cage is made from before it is improved.
+enum class CageStart {
+  envelope, ///< a surface of voxels: any topology, tight everywhere
+  obb,      ///< the union of oriented boxes
+};
+
+struct BudgetCageOptions {
+  CageStart start = CageStart::envelope;
+  ImproveOptions improve = {}; ///< the budget and the clearance among them
+  int resolution = 0;          ///< of the envelope: voxels along the model's diagonal; 0: chosen
+  double closing = 0;          ///< of the envelope: gaps narrower than twice this are filled
+  GenerateOptions boxes = {};  ///< of the boxes
+};
+
+struct BudgetCage {
+  TriangleMesh cage; ///< valid in the sense of validate_cage(), on exactly these coordinates
+  ImproveReport report;
+  double clearance = 0; ///< that the improvement kept: less than asked for if the boxes came nearer
+  std::size_t start_vertices = 0;
+  int resolution = 0;                 ///< of the envelope
+  int bridges = 0;                    ///< of the envelope: rods that join pieces of the model
+  std::optional<GeneratedCage> boxes; ///< what the boxes gave, if they were the start
+  std::vector<StageTime> times;
+};
+
+/// A cage of the model with at most so many vertices or faces: the start, improved, and checked
+/// exactly against the model. If the budget cannot be met it is the smallest cage that was found,
+/// and the report says why.
+///
+/// Errors: those of generate_cage(), envelope() and improve(); no_valid_cage when the result did
+/// not pass the check.
+Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& options = {},
+                                    const Progress& progress = {});
+
+} // namespace cagewright
