@@ -75,10 +75,10 @@ template <> struct Limits<double> {
   // by 1e-16; the weights beyond are good to about that over the distance.
   static constexpr double on_surface = 2e-15;
   // Where d_a + d_b exceeds L by less than this fraction of L, E is computed the careful way.
-  static constexpr double near_edge = 1e-3;
+  static constexpr double near_edge = 1e-4;
   // Nearer than this to the plane of a face it is worth asking whether S cancels: above, the
   // weights lose less than three digits.
-  static constexpr double near_plane = 4e-3;
+  static constexpr double near_plane = 2e-3;
   static constexpr double tiny = 1e-60; // below all that is not on the surface, above underflow
   // Weights whose sum is smaller than this share of their sizes are noise.
   static constexpr double defined = 1e-11;
@@ -87,7 +87,7 @@ template <> struct Limits<double> {
 template <> struct Limits<float> {
   static constexpr float on_surface = 4e-7F;
   static constexpr float near_edge = 2e-2F;
-  static constexpr float near_plane = 2e-2F;
+  static constexpr float near_plane = 1e-2F;
   static constexpr float tiny = 1e-20F;
   static constexpr float defined = 1e-5F;
 };
@@ -111,6 +111,25 @@ template <class D, class V> HWY_INLINE V reciprocal_sqrt(D d, V v) {
 #endif
   using T = hn::TFromD<D>;
   return hn::Div(hn::Set(d, T(1)), hn::Sqrt(v));
+}
+
+/// a / b, likewise.
+template <class D, class V> HWY_INLINE V divide(D d, V a, V b) {
+#if HWY_TARGET == HWY_AVX3
+  if constexpr (sizeof(hn::TFromD<D>) == 8 && hn::MaxLanes(D()) == 8) {
+    const V r0{_mm512_rcp14_pd(b.raw)};
+    const V e = hn::NegMulAdd(b, r0, hn::Set(d, 1.0));
+    const V r1 = hn::MulAdd(r0, hn::MulAdd(e, e, e), r0);
+    const V q = hn::Mul(a, r1);
+    return hn::MulAdd(hn::NegMulAdd(b, q, a), r1, q);
+  } else if constexpr (sizeof(hn::TFromD<D>) == 4 && hn::MaxLanes(D()) == 16) {
+    const V r{_mm512_rcp14_ps(b.raw)};
+    const V q = hn::Mul(a, r);
+    return hn::MulAdd(hn::NegMulAdd(b, q, a), r, q);
+  }
+#endif
+  (void)d;
+  return hn::Div(a, b);
 }
 
 /// Where on the cage a point lies, if it does.
@@ -162,16 +181,28 @@ private:
         hn::MulAdd(constant(f[1]), py_, hn::MulAdd(constant(f[2]), pz_, constant(f[3]))));
   }
 
-  V polynomial(V y) const {
-    constexpr std::size_t degree = Polynomial<T>::coefficients.size() - 1;
-    const V x = hn::Sub(y, constant(T(0.5)));
-    V value = constant(Polynomial<T>::coefficients[degree]);
-    // Unrolled by hand: the compiler gives up after sixteen rounds.
+  /// The terms of the polynomial c[first], c[first + step]..., in powers of `x`.
+  template <std::size_t first, std::size_t step> V terms(V x) const {
+    constexpr auto& c = Polynomial<T>::coefficients;
+    constexpr std::size_t last = (c.size() - 1 - first) / step;
+    V value = constant(c[first + last * step]);
+    // Unrolled by hand: the compiler would leave the loop alone.
     [&]<std::size_t... k>(std::index_sequence<k...>) HWY_ATTR {
-      ((value = hn::MulAdd(value, x, constant(Polynomial<T>::coefficients[degree - 1 - k]))), ...);
+      ((value = hn::MulAdd(value, x, constant(c[first + (last - 1 - k) * step]))), ...);
     }
-    (std::make_index_sequence<degree>());
+    (std::make_index_sequence<last>());
     return value;
+  }
+
+  /// f(y). Horner's rule alone is one long chain of dependent operations, longer than a processor
+  /// looks ahead; four chains side by side take half the time.
+  V polynomial(V y) const {
+    const V x = hn::Sub(y, constant(T(0.5)));
+    const V x2 = hn::Mul(x, x);
+    const V x4 = hn::Mul(x2, x2);
+    const V low = hn::MulAdd(terms<1, 4>(x4), x, terms<0, 4>(x4));
+    const V high = hn::MulAdd(terms<3, 4>(x4), x, terms<2, 4>(x4));
+    return hn::MulAdd(high, x2, low);
   }
 
   /// Remembers which lanes lie on a vertex, edge or face; a vertex before an edge before a face.
@@ -262,7 +293,7 @@ private:
   V e_of(V cross, V dot, V product) const {
     const auto beside = hn::Lt(dot, hn::Zero(d_));
     const V tiny = constant(Limits<T>::tiny);
-    const V across = hn::Div(cross, hn::Max(hn::Sub(product, dot), tiny));
+    const V across = divide(d_, cross, hn::Max(hn::Sub(product, dot), tiny));
     const V half = hn::IfThenElse(beside, across, hn::Add(product, dot));
     return hn::Max(hn::Add(half, half), tiny);
   }
@@ -285,7 +316,7 @@ private:
       const auto near = hn::Lt(hn::Mul(hn::Abs(delta), constant(face.area2)), reach);
       const V quotient = HWY_UNLIKELY(!hn::AllFalse(d_, near))
                              ? careful_quotient(i, {la, lb, lc}, {ga, gb, gc}, delta, s)
-                             : hn::Div(s, delta);
+                             : divide(d_, s, delta);
 
       const V ka = hn::Mul(hn::Sub(gb, gc), constant(face.kappa[0]));
       const V kb = hn::Mul(hn::Sub(gc, ga), constant(face.kappa[1]));
@@ -315,7 +346,7 @@ private:
     }
     const V tiny = constant(Limits<T>::tiny);
     const V safe = hn::IfThenElse(hn::Lt(hn::Abs(delta), tiny), tiny, delta);
-    const V quotient = hn::Div(s, safe);
+    const V quotient = divide(d_, s, safe);
     V terms = hn::Abs(hn::Mul(g[0], lambda[0]));
     terms = hn::Add(terms, hn::Abs(hn::Mul(g[1], lambda[1])));
     terms = hn::Add(terms, hn::Abs(hn::Mul(g[2], lambda[2])));
@@ -341,29 +372,38 @@ private:
     const V tiny = constant(Limits<T>::tiny);
     const V da = hn::Load(d_, distance_ + edge.from * lanes);
     const V db = hn::Load(d_, distance_ + edge.to * lanes);
-    const V squares = hn::MulAdd(da, da, hn::Mul(db, db));
-    const V da0 = hn::Sqrt(hn::Max(hn::Sub(hn::Mul(da, da), height2), tiny));
-    const V db0 = hn::Sqrt(hn::Max(hn::Sub(hn::Mul(db, db), height2), tiny));
+    const V da2 = hn::Mul(da, da);
+    const V db2 = hn::Mul(db, db);
+    const V squares = hn::Add(da2, db2);
+    const V square0 =
+        hn::Mul(hn::Max(hn::Sub(da2, height2), tiny), hn::Max(hn::Sub(db2, height2), tiny));
+    const V inverse_product0 = reciprocal_sqrt(d_, square0);
+    const V product0 = hn::Mul(square0, inverse_product0);
     const V product = hn::Mul(da, db);
-    const V product0 = hn::Mul(da0, db0);
+    const V inverse_product = hn::Mul(hn::Load(d_, inverse_distance_ + edge.from * lanes),
+                                      hn::Load(d_, inverse_distance_ + edge.to * lanes));
     const V dot = hn::Mul(hn::Sub(squares, constant(edge.length * edge.length)), constant(T(0.5)));
     const V e0 = e_of(hn::Mul(cross0, cross0), hn::Sub(dot, height2), product0);
-    const V d_product = hn::Div(hn::Sub(squares, height2), hn::Add(product, product0));
+    const V d_product = divide(d_, hn::Sub(squares, height2), hn::Add(product, product0));
     const V d_e = hn::MulAdd(constant(T(2)), d_product, constant(T(2)));
     const V e = hn::MulAdd(height2, d_e, e0);
 
-    const V root0 = hn::Sqrt(hn::Max(hn::Mul(e0, product0), tiny)); // 2 y0 d_a0 d_b0
-    const V root = hn::Sqrt(hn::Max(hn::Mul(e, product), tiny));
+    const V root0_2 = hn::Max(hn::Mul(e0, product0), tiny);
+    const V root2 = hn::Max(hn::Mul(e, product), tiny);
+    const V inverse_root0 = reciprocal_sqrt(d_, root0_2);
+    const V inverse_root = reciprocal_sqrt(d_, root2);
+    const V root0 = hn::Mul(root0_2, inverse_root0); // 2 y0 d_a0 d_b0
+    const V root = hn::Mul(root2, inverse_root);
     const V d_root2 = hn::MulAdd(d_e, product, hn::Mul(e0, d_product));
-    const V d_inverse_root =
-        hn::Neg(hn::Div(hn::Div(hn::Div(d_root2, root), root0), hn::Add(root, root0)));
+    const V d_inverse_root = hn::Neg(
+        divide(d_, hn::Mul(hn::Mul(d_root2, inverse_root), inverse_root0), hn::Add(root, root0)));
 
     const V half = constant(T(0.5));
-    const V y0 = hn::Div(hn::Mul(half, root0), product0);
-    const V y = hn::Div(hn::Mul(half, root), product);
-    const V d_y2 = hn::Div(hn::Sub(hn::Mul(d_e, product0), hn::Mul(e0, d_product)),
-                           hn::Mul(constant(T(4)), hn::Mul(product, product0)));
-    const V d_y = hn::Div(d_y2, hn::Add(y, y0));
+    const V y0 = hn::Mul(half, hn::Mul(root0, inverse_product0));
+    const V y = hn::Mul(half, hn::Mul(root, inverse_product));
+    const V d_y2 = hn::Mul(hn::Mul(constant(T(0.25)), hn::Mul(inverse_product, inverse_product0)),
+                           hn::Sub(hn::Mul(d_e, product0), hn::Mul(e0, d_product)));
+    const V d_y = divide(d_, d_y2, hn::Add(y, y0));
 
     // f(y0) and the divided difference f[y, y0], by Horner's rule.
     constexpr auto& c = Polynomial<T>::coefficients;
@@ -375,7 +415,7 @@ private:
       d_f = hn::MulAdd(d_f, x, f0);
       f0 = hn::MulAdd(f0, x0, constant(c[k]));
     }
-    return hn::MulAdd(f0, d_inverse_root, hn::Div(hn::Mul(d_f, d_y), root));
+    return hn::MulAdd(f0, d_inverse_root, hn::Mul(hn::Mul(d_f, d_y), inverse_root));
   }
 
   /// Points on the cage take the barycentric coordinates of where they lie.
