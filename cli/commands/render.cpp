@@ -166,13 +166,13 @@ void add_render(CLI::App& app, Session& session) {
   sub->add_option("--up", options.up, "The model's up axis: y or z")
       ->transform(CLI::CheckedTransformer(
           std::vector<std::pair<std::string, UpAxis>>{{"y", UpAxis::y}, {"z", UpAxis::z}}))
-      ->default_str("y");
+      ->option_text("y|z=y");
   sub->add_option("--background", options.background, "gradient, white or transparent")
       ->transform(CLI::CheckedTransformer(std::vector<std::pair<std::string, Background>>{
           {"gradient", Background::gradient},
           {"white", Background::white},
           {"transparent", Background::transparent}}))
-      ->default_str("gradient");
+      ->option_text("NAME=gradient");
   sub->add_flag("--color-by-group", command->color_by_group,
                 "A color for each object of the files, such as the boxes of --emit boxes");
   sub->add_flag("--glass", command->model_as_cage, "Draw the model itself as a cage is drawn");

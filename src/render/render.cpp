@@ -318,11 +318,16 @@ Status check_options(const Scene& scene, std::size_t views, const RenderOptions&
 Status check_size(const RenderOptions& options) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-  const GLint limit = largest / options.samples;
-  if (options.width > limit || options.height > limit) {
-    return Error{ErrorCode::too_large, "a picture with " + std::to_string(options.samples) +
-                                           " samples can have at most " + std::to_string(limit) +
-                                           " by " + std::to_string(limit) + " pixels"};
+  // Some 40 bytes a sample: about 4 GB, beyond which drivers fail in ways that cannot be caught.
+  constexpr double most_samples = 1e8;
+  const double across = double{options.samples} * options.width;
+  const double upward = double{options.samples} * options.height;
+  if (across > largest || upward > largest || across * upward > most_samples) {
+    return Error{ErrorCode::too_large,
+                 "a picture of " + std::to_string(options.width) + " by " +
+                     std::to_string(options.height) + " pixels with " +
+                     std::to_string(options.samples) +
+                     " samples needs too much memory; make it smaller or use fewer samples"};
   }
   return success();
 }

@@ -307,6 +307,7 @@ TEST_F(Rendering, RefusesOptionsOutOfRange) {
   EXPECT_EQ(code_with([](RenderOptions& o) { o.cage_opacity = std::nan(""); }),
             ErrorCode::invalid_option);
   EXPECT_EQ(code_with([](RenderOptions& o) { o.height = 1 << 30; }), ErrorCode::too_large);
+  EXPECT_EQ(code_with([](RenderOptions& o) { o.width = o.height = 5100; }), ErrorCode::too_large);
 }
 
 } // namespace
