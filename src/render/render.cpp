@@ -320,8 +320,8 @@ Status check_size(const RenderOptions& options) {
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   // Some 40 bytes a sample: about 4 GB, beyond which drivers fail in ways that cannot be caught.
   constexpr double most_samples = 1e8;
-  const double across = double{options.samples} * options.width;
-  const double upward = double{options.samples} * options.height;
+  const double across = static_cast<double>(options.samples) * options.width;
+  const double upward = static_cast<double>(options.samples) * options.height;
   if (across > largest || upward > largest || across * upward > most_samples) {
     return Error{ErrorCode::too_large,
                  "a picture of " + std::to_string(options.width) + " by " +
