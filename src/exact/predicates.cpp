@@ -320,6 +320,27 @@ bool triangles_intersect(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
   return false;
 }
 
+bool triangles_cross_properly(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
+  const auto some_edge_passes = [](const Vec3(&edges)[3], const Vec3(&face)[3]) {
+    std::array<int, 3> side;
+    for (int i = 0; i < 3; ++i) {
+      side[i] = orient3d(face[0], face[1], face[2], edges[i]);
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      if (side[i] * side[j] < 0) {
+        const int first = orient3d(edges[i], edges[j], face[0], face[1]);
+        if (first != 0 && orient3d(edges[i], edges[j], face[1], face[2]) == first &&
+            orient3d(edges[i], edges[j], face[2], face[0]) == first) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  return some_edge_passes(a, b) || some_edge_passes(b, a);
+}
+
 bool faces_cross(std::span<const Vec3> positions, const Triangle& a, const Triangle& b) {
   const auto is_shared = [](Index v, const Triangle& t) {
     return v == t[0] || v == t[1] || v == t[2];

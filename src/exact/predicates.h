@@ -88,6 +88,10 @@ bool segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, co
 /// triangle is the segment or the point that its corners span.
 bool triangles_intersect(const Vec3 (&a)[3], const Vec3 (&b)[3]);
 
+/// True when an edge of one triangle passes through the inside of the other: from one side of its
+/// plane to the other, past no edge or corner. Touching and overlapping in a plane do not count.
+bool triangles_cross_properly(const Vec3 (&a)[3], const Vec3 (&b)[3]);
+
 /// True when two faces of one mesh have a point in common that is not part of the corner or edge
 /// that they share by index. Faces with the same three corners cross. Of two faces that share
 /// corners neither should be degenerate: the answer may then be true where they only touch.

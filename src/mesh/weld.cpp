@@ -58,4 +58,19 @@ TriangleMesh weld(TriangleView mesh) {
   return result;
 }
 
+PolygonMesh weld(const PolygonMesh& mesh) {
+  WeldedPoints points = weld_points(mesh.positions);
+  PolygonMesh result;
+  result.positions = std::move(points.positions);
+  std::vector<Index> face;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    face.clear();
+    for (const Index v : mesh.face(f)) {
+      face.push_back(points.point_of[v]);
+    }
+    result.add_face(face);
+  }
+  return result;
+}
+
 } // namespace cagewright

@@ -2,6 +2,7 @@
 /// Merging vertices that have exactly the same position.
 #pragma once
 
+#include "mesh/polygon_mesh.h"
 #include "mesh/triangle_mesh.h"
 
 #include <span>
@@ -25,5 +26,8 @@ WeldedPoints weld_points(std::span<const Vec3> positions);
 /// The mesh over the distinct positions among its vertices. No triangle is dropped, so that some
 /// may name a vertex twice.
 TriangleMesh weld(TriangleView mesh);
+
+/// The same for polygons: positions and faces, without colors and groups.
+PolygonMesh weld(const PolygonMesh& mesh);
 
 } // namespace cagewright

@@ -169,16 +169,7 @@ TEST_P(TopologyOfModel, IsAsPublished) {
   const Known& known = GetParam();
   const auto mesh = read_mesh(std::string(folder) + "/" + known.file);
   ASSERT_TRUE(mesh) << mesh.error().message;
-  PolygonMesh merged;
-  const WeldedPoints points = weld_points(mesh->positions);
-  merged.positions = points.positions;
-  for (std::size_t f = 0; f < mesh->face_count(); ++f) {
-    std::vector<Index> face;
-    for (const Index v : mesh->face(f)) {
-      face.push_back(points.point_of[v]);
-    }
-    merged.add_face(face);
-  }
+  const PolygonMesh merged = weld(*mesh);
   const TopologyReport report = topology(merged);
   EXPECT_EQ(merged.positions.size(), known.vertices);
   EXPECT_EQ(report.boundary_edges.size(), known.boundary_edges);
