@@ -27,7 +27,8 @@ struct ModelVolume {
 /// Sampled means: a point in the middle of each cell of a grid of 96 along the longest side of the
 /// bounding box counts as inside when at least four of the six rays from it along the axes cross
 /// the surface unequally often from either side. That closes holes, and does not mind a model that
-/// is inverted as a whole. The error is below about 1 % for a compact model; thin sheets have none.
+/// is inverted as a whole. The error is below about 1 % for a compact model; flat sheets have none,
+/// bent ones what they half surround.
 ///
 /// Cost: O(T) and a million votes.
 ModelVolume model_volume(TriangleView model);
