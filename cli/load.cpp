@@ -28,14 +28,14 @@ Error in_file(const std::string& path, Error error) {
 
 Status can_write_mesh(const std::string& path) {
   namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    return Error{ErrorCode::cannot_write, path + ": is a folder; give the name of a file"};
+  }
   const std::optional<MeshFormat> format = format_of_name(path);
   if (!format || *format == MeshFormat::gltf) {
     return Error{ErrorCode::unsupported,
                  path + ": meshes are written as .obj, .ply, .stl or .off; use one of these"};
-  }
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    return Error{ErrorCode::cannot_write, path + ": is a folder; give the name of a file"};
   }
   fs::path folder = fs::path(path).parent_path();
   if (folder.empty()) {
