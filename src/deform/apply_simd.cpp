@@ -14,23 +14,25 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "deform/apply_simd.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#ifndef CAGEWRIGHT_DEFORM_TILE_SUM
-#define CAGEWRIGHT_DEFORM_TILE_SUM
+#ifndef CAGEWRIGHT_DEFORM_TILE_MOVES
+#define CAGEWRIGHT_DEFORM_TILE_MOVES
 namespace cagewright {
 namespace {
-
-/// What a tile is moved by: x, y and z of sixteen points.
-struct TileSum {
-  alignas(64) std::array<std::array<double, 16>, 3> offset;
-};
 
 /// The displaced cage vertices.
 struct Moves {
   std::span<const Index> cage_vertices;
   std::span<const Vec3> displacements;
+};
+
+/// Where sixteen points come from and go to: x, y and z of each, as Vec3 has them.
+struct TilePoints {
+  const double* base;
+  double* positions;
 };
 
 } // namespace
@@ -60,8 +62,11 @@ HWY_INLINE V load(D d, const std::int16_t* from) {
   return hn::PromoteTo(d, hn::PromoteTo(wide, hn::LoadU(hn::Rebind<std::int16_t, D>(), from)));
 }
 
+/// Moves the points first, first + 1... of a tile, as many as `vectors` registers hold. \returns
+/// the greatest change of each coordinate.
 template <class T>
-void sum_points(const T* tile, std::size_t first, const Moves& moves, TileSum& sum) {
+HWY_INLINE V move_points_from(const T* tile, std::size_t tile_size, std::size_t first,
+                              const Moves& moves, const TilePoints& points) {
   const D d;
   V x[vectors];
   V y[vectors];
@@ -71,6 +76,9 @@ void sum_points(const T* tile, std::size_t first, const Moves& moves, TileSum& s
   }
   for (std::size_t k = 0; k < moves.cage_vertices.size(); ++k) {
     const T* weights = tile + std::size_t(moves.cage_vertices[k]) * 16 + first;
+    // The same vertex in the next tile. With few vertices moved the processor does not see the
+    // pattern by itself; beyond the last tile nothing happens.
+    hwy::Prefetch(weights + tile_size);
     const Vec3& by = moves.displacements[k];
     const V by_x = hn::Set(d, by.x());
     const V by_y = hn::Set(d, by.y());
@@ -82,27 +90,46 @@ void sum_points(const T* tile, std::size_t first, const Moves& moves, TileSum& s
       z[i] = hn::MulAdd(w, by_z, z[i]);
     }
   }
+  V change = hn::Zero(d);
+  alignas(64) double offsets[3 * vectors * lanes];
   for (std::size_t i = 0; i < vectors; ++i) {
-    hn::Store(x[i], d, sum.offset[0].data() + first + i * lanes);
-    hn::Store(y[i], d, sum.offset[1].data() + first + i * lanes);
-    hn::Store(z[i], d, sum.offset[2].data() + first + i * lanes);
+    hn::StoreInterleaved3(x[i], y[i], z[i], d, offsets + 3 * i * lanes);
   }
+  for (std::size_t i = 0; i < 3 * vectors * lanes; i += lanes) {
+    double* const position = points.positions + 3 * first + i;
+    const V before = hn::LoadU(d, position);
+    const V after = hn::Add(hn::LoadU(d, points.base + 3 * first + i), hn::Load(d, offsets + i));
+    change = hn::Max(change, hn::Abs(hn::Sub(after, before)));
+    hn::StoreU(after, d, position);
+  }
+  return change;
 }
 
-template <class T> void sum_tile(const T* tile, const Moves& moves, TileSum& sum) {
+template <class T>
+double move_any(const T* tile, std::size_t tile_size, const Moves& moves,
+                const TilePoints& points) {
+  for (std::size_t i = 48; i < 96; i += 8) { // the points of the next tile
+    hwy::Prefetch(points.base + i);
+    hwy::Prefetch(points.positions + i);
+  }
+  V change = hn::Zero(D());
   for (std::size_t first = 0; first < 16; first += vectors * lanes) {
-    sum_points(tile, first, moves, sum);
+    change = hn::Max(change, move_points_from(tile, tile_size, first, moves, points));
   }
+  return hn::GetLane(hn::MaxOfLanes(D(), change));
 }
 
-void sum_double(const double* tile, const Moves& moves, TileSum& sum) {
-  sum_tile(tile, moves, sum);
+double move_double(const double* tile, std::size_t size, const Moves& moves,
+                   const TilePoints& points) {
+  return move_any(tile, size, moves, points);
 }
-void sum_float(const float* tile, const Moves& moves, TileSum& sum) {
-  sum_tile(tile, moves, sum);
+double move_float(const float* tile, std::size_t size, const Moves& moves,
+                  const TilePoints& points) {
+  return move_any(tile, size, moves, points);
 }
-void sum_fixed(const std::int16_t* tile, const Moves& moves, TileSum& sum) {
-  sum_tile(tile, moves, sum);
+double move_fixed(const std::int16_t* tile, std::size_t size, const Moves& moves,
+                  const TilePoints& points) {
+  return move_any(tile, size, moves, points);
 }
 
 } // namespace
@@ -113,30 +140,39 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cagewright {
 
-HWY_EXPORT(sum_double);
-HWY_EXPORT(sum_float);
-HWY_EXPORT(sum_fixed);
+HWY_EXPORT(move_double);
+HWY_EXPORT(move_float);
+HWY_EXPORT(move_fixed);
 
 namespace {
 
-void sum_of(const double* tile, const Moves& moves, TileSum& sum) {
-  HWY_DYNAMIC_DISPATCH(sum_double)(tile, moves, sum);
+// The overloads choose by the type of the weights, and each by the machine.
+double move_whole(std::span<const double> tile, const Moves& moves, const TilePoints& points) {
+  return HWY_DYNAMIC_DISPATCH(move_double)(tile.data(), tile.size(), moves, points);
 }
-void sum_of(const float* tile, const Moves& moves, TileSum& sum) {
-  HWY_DYNAMIC_DISPATCH(sum_float)(tile, moves, sum);
+double move_whole(std::span<const float> tile, const Moves& moves, const TilePoints& points) {
+  return HWY_DYNAMIC_DISPATCH(move_float)(tile.data(), tile.size(), moves, points);
 }
-void sum_of(const std::int16_t* tile, const Moves& moves, TileSum& sum) {
-  HWY_DYNAMIC_DISPATCH(sum_fixed)(tile, moves, sum);
+double move_whole(std::span<const std::int16_t> tile, const Moves& moves,
+                  const TilePoints& points) {
+  return HWY_DYNAMIC_DISPATCH(move_fixed)(tile.data(), tile.size(), moves, points);
 }
 
-/// positions = base + sum. \returns the greatest change of a coordinate.
-double add(const TileSum& sum, std::span<const Vec3> base, std::span<Vec3> positions) {
-  double change = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Vec3 moved = base[i] + Vec3(sum.offset[0][i], sum.offset[1][i], sum.offset[2][i]);
-    change = std::max(change, (moved - positions[i]).cwiseAbs().maxCoeff());
-    positions[i] = moved;
+/// Up to 16 points; a tile that is not full goes through a full one.
+template <class T>
+double move_part(std::span<const T> tile, const Moves& moves, std::span<const Vec3> base,
+                 std::span<Vec3> positions) {
+  if (positions.size() == 16) {
+    return move_whole(tile, moves, {base.data()->data(), positions.data()->data()});
   }
+  std::array<Vec3, 16> from;
+  std::array<Vec3, 16> to;
+  from.fill(Vec3::Zero());
+  to.fill(Vec3::Zero());
+  std::ranges::copy(base, from.begin());
+  std::ranges::copy(positions, to.begin());
+  const double change = move_whole(tile, moves, {from[0].data(), to[0].data()});
+  std::copy_n(to.begin(), positions.size(), positions.begin());
   return change;
 }
 
@@ -151,11 +187,10 @@ void move_points(const WeightTiles<T>& weights, std::span<const Index> cage_vert
   assert(moved.empty() || moved.size() == weights.tile_count());
   const Moves moves{cage_vertices, displacements};
   parallel_for(0, weights.tile_count(), 64, [&](std::size_t t) {
-    TileSum sum;
-    sum_of(weights.tile(t).data(), moves, sum);
     const std::size_t first = t * 16;
     const std::size_t count = std::min<std::size_t>(16, weights.points() - first);
-    const double change = add(sum, base.subspan(first, count), positions.subspan(first, count));
+    const double change = move_part(weights.tile(t), moves, base.subspan(first, count),
+                                    positions.subspan(first, count));
     if (!moved.empty()) {
       moved[t] += change;
     }
@@ -174,9 +209,7 @@ template <class T>
 void move_tile(std::span<const T> tile, std::span<const Index> cage_vertices,
                std::span<const Vec3> displacements, std::span<const Vec3> base,
                std::span<Vec3> positions) {
-  TileSum sum;
-  sum_of(tile.data(), Moves{cage_vertices, displacements}, sum);
-  add(sum, base, positions);
+  move_part(tile, {cage_vertices, displacements}, base, positions);
 }
 
 template void move_tile(std::span<const double>, std::span<const Index>, std::span<const Vec3>,
