@@ -35,11 +35,14 @@ struct LaneBox {
   }
 };
 
-float round_down(double x) {
-  return std::nextafter(static_cast<float>(std::clamp(x, -1e30, 1e30)), -HUGE_VALF);
-}
+// Outward by two units in the last place: more than the conversion and the arithmetic before it
+// can have lost. (std::nextafter is a call.)
 float round_up(double x) {
-  return std::nextafter(static_cast<float>(std::clamp(x, -1e30, 1e30)), HUGE_VALF);
+  const auto nearest = static_cast<float>(std::clamp(x, -1e30, 1e30));
+  return nearest + (std::abs(nearest) * 0x1.0p-22F + 1e-37F);
+}
+float round_down(double x) {
+  return -round_up(-x);
 }
 
 /// A bound of squared distances in the frame, rounded so that nothing within it is lost.
@@ -500,9 +503,29 @@ std::vector<std::pair<Index, Index>> overlapping_pairs(const TriangleBvh& mesh) 
   return pairs_from(mesh, mesh, true);
 }
 
-MeshDistance mesh_distance(const TriangleBvh& a, const TriangleBvh& b, double max_distance) {
+namespace {
+
+/// True when all of t lies farther than `distance` from the plane of `face`, on one side: then it
+/// is farther from the face. Cheap, and enough for most triangles under the box of a large face.
+bool is_beyond_plane(const Vec3 (&t)[3], const Vec3 (&face)[3], double distance) {
+  const Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
+  const double far = distance * normal.norm() * (1 + 1e-9);
+  const double a = normal.dot(t[0] - face[0]);
+  const double b = normal.dot(t[1] - face[0]);
+  const double c = normal.dot(t[2] - face[0]);
+  return (a > far && b > far && c > far) || (a < -far && b < -far && c < -far);
+}
+
+MeshDistance no_distance(double max_distance) {
   MeshDistance none;
   none.distance = max_distance;
+  return none;
+}
+
+} // namespace
+
+MeshDistance mesh_distance(const TriangleBvh& a, const TriangleBvh& b, double max_distance) {
+  const MeshDistance none = no_distance(max_distance);
   if (a.empty() || b.empty()) {
     return none;
   }
@@ -555,7 +578,11 @@ void TriangleBvh::improve(MeshDistance& best, const Vec3 (&t)[3], Index index) c
     }
     if ((waiting.child & leaf_bit) != 0) {
       const Index other = waiting.child & ~leaf_bit;
-      const ClosestPoints closest = triangle_triangle_closest(t, corners_[other].at);
+      const Vec3(&corners)[3] = corners_[other].at;
+      if (is_beyond_plane(t, corners, best.distance)) {
+        continue;
+      }
+      const ClosestPoints closest = triangle_triangle_closest(t, corners);
       if (closest.distance < best.distance ||
           (closest.distance == best.distance && best.triangle_a == NearestPoint::none)) {
         static_cast<ClosestPoints&>(best) = closest;
