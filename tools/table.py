@@ -2,13 +2,15 @@
 """Makes a cage of every model at every depth by both slicing rules, has each certified by
 `cagewright check`, and writes the figures as a table in Markdown.
 
-  table.py --program build/release/cli/cagewright --models DIR [DIR ...] [--output docs/table.md]
+  table.py --program build/release/cli/cagewright [--models DIR ...] [--output docs/table.md]
 
-Exits with 1 when a cage fails or is not certified, so it is also an acceptance test.
+Without --models: the bundled sample, and the folder that the environment variable
+CAGEWRIGHT_MODELS names. Exits with 1 when a cage fails or is not certified, so it is also an acceptance test.
 """
 
 import argparse
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -26,6 +28,11 @@ def models_in(folders, everything):
             packaged = (path.parent / "armadillo.off").exists() and (path.parent / "turbine.off").exists()
             if path.suffix.lower() in SUFFIXES and (everything or not packaged or path.stem in PACKAGED):
                 yield path
+
+
+def default_models():
+    packaged = os.environ.get("CAGEWRIGHT_MODELS")
+    return [str(pathlib.Path(__file__).parent.parent / "samples")] + ([packaged] if packaged else [])
 
 
 def run(*command):
@@ -53,7 +60,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default="build/release/cli/cagewright")
-    parser.add_argument("--models", nargs="+", default=["samples"])
+    parser.add_argument("--models", nargs="+", default=default_models())
     parser.add_argument("--depths", nargs="+", type=int, default=[0, 1, 2, 3, 4, 5, 6])
     parser.add_argument("--rules", nargs="+", default=["volume", "published"])
     parser.add_argument("--all", action="store_true", help="also the package's small test files")
