@@ -223,6 +223,10 @@ bool segment_with_sides_intersects(const Vec3& p, const Vec3& q, int p_side, int
 } // namespace
 
 int exact_detail::orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  // The usual reason to come here: triangles of one mesh that share a corner.
+  if (d == a || d == b || d == c || a == b || b == c || c == a) {
+    return 0;
+  }
   if (!in_range(
           {a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), c.x(), c.y(), c.z(), d.x(), d.y(), d.z()})) {
     return orient3d_integer(a, b, c, d);
