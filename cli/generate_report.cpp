@@ -133,6 +133,27 @@ nlohmann::json to_json(const GeneratedCage& made, const CageMetrics& metrics) {
   return j;
 }
 
+nlohmann::json to_json(const BudgetCage& made, const CageMetrics& metrics) {
+  nlohmann::json j;
+  if (made.boxes) {
+    j = to_json(made.boxes->boxes, made.boxes->leaves);
+    j["registration"] = to_json(made.boxes->registration);
+  }
+  j["format"] = "cagewright-generate";
+  j["version"] = 1;
+  j["start"] = {{"vertices", made.start_vertices},
+                {"envelope_resolution", made.resolution},
+                {"bridges", made.bridges}};
+  j["budget"] = {{"reached", made.report.reached},
+                 {"why_not", made.report.why_not},
+                 {"clearance", made.clearance},
+                 {"objective", made.report.objective}};
+  j["cage"] = figures_as_json(metrics);
+  j["cage"]["valid"] = true; // make_budget_cage() returns no other
+  j["times"] = to_json(made.times);
+  return j;
+}
+
 std::string summary(const BoxDecomposition& boxes, const std::vector<int>& cover) {
   return fmt::format("{} voxels ({} on the surface, {} inside)\n",
                      boxes.grid.count(VoxelKind::feature) + boxes.grid.count(VoxelKind::inner),
@@ -145,6 +166,24 @@ std::string summary(const GeneratedCage& made, const CageMetrics& metrics) {
          fmt::format("  {} pairs of neighbouring boxes joined at a common quad\n",
                      made.registration.joints.size()) +
          figures_as_text(metrics) + times_line(made.times);
+}
+
+
+std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
+  const std::string start =
+      made.boxes ? fmt::format("  made from {} boxes, {} vertices\n", made.boxes->leaves.size(),
+                               made.start_vertices)
+                 : fmt::format("  made from an envelope of {} voxels along the diagonal, {} "
+                               "vertices{}\n",
+                               made.resolution, made.start_vertices,
+                               made.bridges > 0 ? fmt::format("; {} bridges between pieces of the "
+                                                              "model",
+                                                              made.bridges)
+                                                : "");
+  const std::string verdict =
+      made.report.reached ? std::string("a valid cage\n")
+                          : "a valid cage, larger than asked for: " + made.report.why_not + "\n";
+  return verdict + start + figures_as_text(metrics) + times_line(made.times);
 }
 
 } // namespace cagewright::cli

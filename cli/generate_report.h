@@ -2,6 +2,7 @@
 /// What `generate` says about its work: a summary for people, JSON for programs.
 #pragma once
 
+#include "cage/budget_cage.h"
 #include "cage/generate.h"
 #include "validate/cage_metrics.h"
 
@@ -17,7 +18,11 @@ nlohmann::json to_json(const BoxDecomposition& boxes, const std::vector<int>& co
 /// The same, and the cage: its figures, the registration, the times.
 nlohmann::json to_json(const GeneratedCage& made, const CageMetrics& metrics);
 
+/// The budget, the start and the cage.
+nlohmann::json to_json(const BudgetCage& made, const CageMetrics& metrics);
+
 std::string summary(const BoxDecomposition& boxes, const std::vector<int>& cover);
 std::string summary(const GeneratedCage& made, const CageMetrics& metrics);
+std::string summary(const BudgetCage& made, const CageMetrics& metrics);
 
 } // namespace cagewright::cli

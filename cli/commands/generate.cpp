@@ -2,6 +2,7 @@
 #include "load.h"
 #include "session.h"
 
+#include "cage/budget_cage.h"
 #include "cage/generate.h"
 #include "cage/hexahedron.h"
 #include "io/atomic_file.h"
@@ -25,6 +26,9 @@ struct Arguments {
   std::string json;
   Emit emit = Emit::cage;
   GenerateOptions options;
+  bool has_budget = false; ///< an option asks for more than the union of the boxes
+  int vertices = 0;        ///< 0: not given
+  BudgetCageOptions budget;
 };
 
 void say(const Session& session, const std::string& text) {
@@ -103,6 +107,29 @@ int make_cage(const Arguments& arguments, const Session& session, const Triangle
   return done;
 }
 
+int make_cage_within_budget(const Arguments& arguments, const Session& session,
+                            const TriangleMesh& model) {
+  const Progress progress = session.progress();
+  BudgetCageOptions options = arguments.budget;
+  options.boxes = arguments.options;
+  if (arguments.vertices > 0 || options.improve.faces > 0) {
+    options.improve.vertices = arguments.vertices;
+  }
+  const Result<BudgetCage> made = make_budget_cage(model, options, progress.part(0, 0.97));
+  if (!made) {
+    return fail(in_file(arguments.model, made.error()));
+  }
+  const CageMetrics metrics = measure_cage(made->cage, model);
+  progress(1, "done");
+  if (const Status written =
+          write_outputs(arguments, PolygonMesh(made->cage), to_json(*made, metrics));
+      !written) {
+    return fail(written.error());
+  }
+  say(session, summary(*made, metrics));
+  return done;
+}
+
 int run(const Arguments& arguments, const Session& session) {
   if (const Status writable = can_write_mesh(arguments.output); !writable) {
     return fail(writable.error());
@@ -111,8 +138,11 @@ int run(const Arguments& arguments, const Session& session) {
   if (!model) {
     return fail(model.error());
   }
-  return arguments.emit == Emit::cage ? make_cage(arguments, session, *model)
-                                      : emit_stage(arguments, session, *model);
+  if (arguments.emit != Emit::cage) {
+    return emit_stage(arguments, session, *model);
+  }
+  return arguments.has_budget ? make_cage_within_budget(arguments, session, *model)
+                              : make_cage(arguments, session, *model);
 }
 
 void add_slicing_options(CLI::App& command, SlicingOptions& slicing) {
@@ -180,6 +210,41 @@ void add_pipeline_options(CLI::App& command, GenerateOptions& options) {
       ->default_str("together")->group(group);
 }
 
+void add_budget_options(CLI::App& command, Arguments& arguments) {
+  const char* group = "Budget";
+  BudgetCageOptions& budget = arguments.budget;
+  const auto asked = [&arguments](const auto&) { arguments.has_budget = true; };
+  command
+      .add_option("--vertices", arguments.vertices,
+                  "Make the best cage of at most so many vertices (100, if another option of this "
+                  "group is given, and not --faces)")
+      ->check(CLI::Range(4, 100000))->default_str("")->each(asked)->group(group);
+  command.add_option("--faces", budget.improve.faces,
+                     "The same for triangles; both may be given")
+      ->check(CLI::Range(4, 200000))->default_str("")->each(asked)->group(group);
+  command
+      .add_option("--method", budget.start,
+                  "What a cage within a budget is made from: envelope, a surface of voxels of any "
+                  "topology; or obb, the union of the boxes")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, CageStart>{
+          {"envelope", CageStart::envelope}, {"obb", CageStart::obb}}))
+      ->default_str("envelope")->each(asked)->group(group);
+  command
+      .add_option("--clearance", budget.improve.clearance,
+                  "Least distance between cage and model, as a fraction of the model's diagonal")
+      ->check(CLI::Range(1e-6, 0.5))->each(asked)->group(group);
+  command
+      .add_option("--closing", budget.closing,
+                  "With --method envelope: fill holes and gaps narrower than twice this fraction of "
+                  "the model's diagonal")
+      ->check(CLI::Range(0.0, 0.5))->group(group);
+  command
+      .add_option("--envelope-resolution", budget.resolution,
+                  "With --method envelope: voxels along the model's diagonal; 0: chosen by the "
+                  "budget and the model")
+      ->check(CLI::Range(0, 512))->group(group);
+}
+
 } // namespace
 
 void add_generate(CLI::App& app, Session& session) {
@@ -197,6 +262,7 @@ void add_generate(CLI::App& app, Session& session) {
       ->default_str("cage");
   add_slicing_options(*command, arguments->options.boxes.slicing);
   add_pipeline_options(*command, arguments->options);
+  add_budget_options(*command, *arguments);
   command->callback(
       [arguments, &session] { session.run = [arguments, &session] { return run(*arguments, session); }; });
 }
