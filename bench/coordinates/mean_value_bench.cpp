@@ -113,7 +113,7 @@ const bool registered = [] {
   // The targets are bits, the best the lowest: take away the best, one after the other.
   for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
     const std::string name = hwy::TargetName(targets & -targets);
-    if (name == "SSSE3" || name == "AVX3_DL") {
+    if (name == "SSSE3" || name == "AVX3_DL" || name == "EMU128") {
       continue; // not compiled
     }
     add("Bind/double/" + name, Kind::exact, targets);
