@@ -1,0 +1,225 @@
+"""The commands bind and deform from outside.
+
+Called as: deform_test.py PROGRAM [unittest arguments]
+"""
+
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+DONE, COULD_NOT, BAD_INPUT = 0, 1, 2
+
+CORNERS = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+QUADS = [(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6)]
+
+# Two boxes with hard edges, texture coordinates, groups, materials and comments.
+MODEL = """# a comment with numbers 1 2 3
+mtllib colors.mtl
+o boxes
+""" + "".join(f"v {0.5 * x - 0.3} {0.5 * y} {0.5 * z}\n" for x, y, z in CORNERS) + \
+    "".join(f"v {0.1 * x + 0.6} {0.1 * y} {0.1 * z} 1 0 0\n" for x, y, z in CORNERS) + \
+    "vt 0 0\nvt 1 0\nvt 1 1\n" + \
+    "vn 0 0 -1\nvn 0 0 1\nvn 0 -1 0\nvn 0 1 0\nvn -1 0 0\nvn 1 0 0\n" + \
+    "g large\nusemtl red # a remark\ns off\n" + \
+    "".join("f " + " ".join(f"{v}/1/{n}" for v in quad) + "\n" for n, quad in enumerate(QUADS, 1)) + \
+    "g small\nusemtl blue\n" + \
+    "".join("f " + " ".join(f"{v + 8}/2/{n}" for v in quad) + "\n" for n, quad in enumerate(QUADS, 1))
+
+
+def cage(move=lambda x, y, z: (x, y, z), faces=QUADS):
+    text = "".join("v {} {} {}\n".format(*move(x, y, z)) for x, y, z in CORNERS)
+    return text + "".join("f " + " ".join(map(str, face)) + "\n" for face in faces)
+
+
+def run(*arguments):
+    return subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True,
+                          timeout=120, check=False)
+
+
+def rows(path, keyword):
+    return [[float(n) for n in line.split()[1:4]] for line in path.read_text().splitlines()
+            if line.startswith(keyword + " ")]
+
+
+class InAFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.model = self.file("model.obj", MODEL)
+        self.rest = self.file("cage.obj", cage())
+        self.pose = self.file("pose.obj", cage(lambda x, y, z: (x + 2, y, z)))
+        self.out = self.folder / "out.obj"
+
+    def file(self, name, text):
+        path = self.folder / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def assert_near(self, a, b, tolerance):
+        self.assertEqual(len(a), len(b))
+        for one, other in zip(a, b):
+            for x, y in zip(one, other):
+                self.assertAlmostEqual(x, y, delta=tolerance)
+
+    def assert_refused(self, result, code, *words):
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertFalse(self.out.exists())
+
+
+class Deform(InAFolder):
+    def test_follows_the_cage(self):
+        done = run("deform", self.model, self.rest, self.pose, "-o", self.out)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual(done.stderr, "")
+        self.assertIn("16 of 16 vertices moved", done.stdout)
+        moved = [[x + 2, y, z] for x, y, z in rows(self.model, "v")]
+        self.assert_near(rows(self.out, "v"), moved, 1e-12)
+
+    def test_keeps_all_but_positions_and_normals(self):
+        run("deform", self.model, self.rest, self.pose, "-o", self.out)
+        kept = [line for line in MODEL.splitlines() if not line.startswith(("v ", "vn "))]
+        self.assertEqual(kept, [line for line in self.out.read_text().splitlines()
+                                if not line.startswith(("v ", "vn "))])
+        colored = [line for line in self.out.read_text().splitlines() if line.startswith("v ")][8:]
+        self.assertTrue(all(line.endswith(" 1 0 0") for line in colored))
+
+    def test_turns_normals_and_keeps_edges_hard(self):
+        turned = self.file("turned.obj", cage(lambda x, y, z: (-y, x, z)))
+        run("deform", self.model, self.rest, turned, "-o", self.out)
+        self.assert_near(rows(self.out, "vn"),
+                         [[-y, x, z] for x, y, z in rows(self.model, "vn")], 1e-9)
+
+    def test_leaves_the_model_as_it_was_when_the_cage_rests(self):
+        run("deform", self.model, self.rest, self.rest, "-o", self.out)
+        self.assertEqual(rows(self.out, "v"), rows(self.model, "v"))
+
+    def test_writes_a_sequence(self):
+        frames = [self.file(f"frame_{i}.obj", cage(lambda x, y, z, i=i: (x, y + i, z)))
+                  for i in (1, 2, 3)]
+        folder = self.folder / "frames"
+        done = run("deform", self.model, self.rest, self.folder / "frame_*.obj", "-o", f"{folder}/")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        named = run("deform", self.model, self.rest, *frames, "-o", self.folder / "m_*.obj")
+        self.assertEqual(named.returncode, DONE, named.stderr)
+        for i in (1, 2, 3):
+            moved = [[x, y + i, z] for x, y, z in rows(self.model, "v")]
+            self.assert_near(rows(folder / f"frame_{i}.obj", "v"), moved, 1e-12)
+            self.assertEqual((folder / f"frame_{i}.obj").read_bytes(),
+                             (self.folder / f"m_frame_{i}.obj").read_bytes())
+        self.assert_refused(run("deform", self.model, self.rest, *frames, "-o", self.out),
+                            BAD_INPUT, "is one file, but there are 3")
+
+    def test_moves_one_group_only(self):
+        done = run("deform", self.model, self.rest, self.pose, "-o", self.out, "--only", "small")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        before, after = rows(self.model, "v"), rows(self.out, "v")
+        self.assertEqual(after[:8], before[:8])
+        self.assert_near(after[8:], [[x + 2, y, z] for x, y, z in before[8:]], 1e-12)
+        self.out.unlink()
+        self.assert_refused(run("deform", self.model, self.rest, self.pose, "-o", self.out,
+                                "--only", "tail"), BAD_INPUT, "no group 'tail'", "large", "small")
+
+    def test_writes_other_formats(self):
+        done = run("deform", self.model, self.rest, self.pose, "-o", self.folder / "out.off")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertTrue((self.folder / "out.off").read_text().split()[1:3], ["16", "12"])
+
+    def test_warns_of_a_cage_that_does_not_fit(self):
+        narrow = self.file("narrow.obj", cage(lambda x, y, z: (0.75 * x, y, z)))
+        done = run("deform", self.model, narrow, narrow, "-o", self.out)
+        self.assertEqual(done.returncode, DONE)
+        self.assertIn("warning", done.stderr)
+        self.assertIn("4 vertex_outside", done.stderr)
+        self.out.unlink()
+        self.assert_refused(run("deform", self.model, narrow, narrow, "-o", self.out, "--strict"),
+                            COULD_NOT, "4 vertex_outside")
+        open_cage = self.file("open.obj", cage(faces=QUADS[1:]))
+        done = run("deform", self.model, open_cage, open_cage, "-o", self.out)
+        self.assertEqual(done.returncode, DONE)
+        self.assertIn("4 open_edge", done.stderr)
+        self.assertEqual(rows(self.out, "v"), rows(self.model, "v"))
+
+    def test_says_how_cages_differ(self):
+        fewer = self.file("fewer.obj", cage(faces=QUADS[1:]))
+        self.assert_refused(run("deform", self.model, self.rest, fewer, "-o", self.out), BAD_INPUT,
+                            "fewer.obj has 5 faces, the cage at rest 6")
+        other = self.file("other.obj", cage(faces=[QUADS[0][::-1], *QUADS[1:]]))
+        self.assert_refused(run("deform", self.model, self.rest, other, "-o", self.out), BAD_INPUT,
+                            "face 0 of", "has the vertices 1 3 2 0")
+        self.assert_refused(run("deform", self.model, self.rest, self.model, "-o", self.out),
+                            BAD_INPUT, "has 16 vertices, the cage at rest 8")
+
+
+class Bind(InAFolder):
+    def setUp(self):
+        super().setUp()
+        self.weights = self.folder / "weights.npz"
+        done = run("bind", self.model, self.rest, "-o", self.weights)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+
+    def test_gives_the_same_model(self):
+        direct = self.folder / "direct.obj"
+        run("deform", self.model, self.rest, self.pose, "-o", direct)
+        done = run("deform", self.model, self.rest, self.pose, "-o", self.out, "--weights",
+                   self.weights)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assert_near(rows(self.out, "v"), rows(direct, "v"), 1e-6)
+
+    def test_stores_arrays_that_reproduce_the_model(self):
+        with zipfile.ZipFile(self.weights) as archive:
+            self.assertIsNone(archive.testzip())
+            self.assertEqual({"weights.npy", "cage_positions.npy", "cage_faces.npy", "kind.npy",
+                              "version.npy", "model_checksum.npy"}, set(archive.namelist()))
+            raw = archive.read("weights.npy")
+        begin = 10 + struct.unpack("<H", raw[8:10])[0]
+        self.assertIn(b"'shape': (16, 8)", raw[:begin])
+        weights = struct.unpack("<128f", raw[begin:])
+        for p, position in enumerate(rows(self.model, "v")):
+            row = weights[8 * p:8 * p + 8]
+            self.assertAlmostEqual(sum(row), 1, delta=1e-6)
+            for axis in range(3):
+                x = sum(w * corner[axis] for w, corner in zip(row, CORNERS))
+                self.assertAlmostEqual(x, position[axis], delta=1e-6)
+
+    def test_can_be_loaded_by_numpy(self):
+        try:
+            import numpy
+        except ImportError:
+            self.skipTest("no numpy")
+        with numpy.load(self.weights) as arrays:
+            self.assertEqual(str(arrays["kind"]), "mean_value")
+            self.assertEqual(arrays["weights"].shape, (16, 8))
+            self.assertEqual(arrays["cage_faces"].shape, (6, 4))
+
+    def test_weights_of_others_are_refused(self):
+        def deform(model, rest, weights):
+            return run("deform", model, rest, self.pose, "-o", self.out, "--weights", weights)
+
+        moved = self.file("moved.obj", MODEL.replace("v 0.2 ", "v 0.25 "))
+        self.assert_refused(deform(moved, self.rest, self.weights), BAD_INPUT, "another shape")
+        self.assert_refused(deform(self.rest, self.rest, self.weights), BAD_INPUT,
+                            "for a model of 16 vertices, but this one has 8")
+        wide = self.file("wide.obj", cage(lambda x, y, z: (2 * x, y, z)))
+        self.assert_refused(deform(self.model, wide, self.weights), BAD_INPUT, "another cage")
+        self.assert_refused(deform(self.model, self.rest, self.model), BAD_INPUT, "not a .npz file")
+        cut = self.folder / "cut.npz"
+        cut.write_bytes(self.weights.read_bytes()[:-30])
+        self.assert_refused(deform(self.model, self.rest, cut), BAD_INPUT, "cut off")
+
+    def test_leaves_nothing_when_it_cannot_write(self):
+        failed = run("bind", self.model, self.rest, "-o", self.folder / "no" / "w.npz")
+        self.assertEqual(failed.returncode, BAD_INPUT)
+        self.assertIn("cannot be written", failed.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
