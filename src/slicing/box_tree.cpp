@@ -21,6 +21,10 @@ constexpr double margin_fraction = 0.05;
 /// or a bend only together with the next: then it pays to look ahead.
 constexpr double clear_gain = 0.05;
 
+/// A leaf leaves the frame it was cut in when a box in another has less than this share of the
+/// volume: neighbours in the same frame join and unite with fewer slivers.
+constexpr double worth_turning = 0.95;
+
 /// What a cut would make of a box.
 struct Candidate {
   Cut cut;
@@ -49,6 +53,9 @@ public:
       examine(fresh);
       fresh = cut_next();
     }
+    if (options_.rule == SlicingRule::volume) {
+      tighten_leaves();
+    }
     return std::move(tree_);
   }
 
@@ -71,7 +78,7 @@ private:
   }
 
   [[nodiscard]] BoxFit fit() const {
-    return options_.rule == SlicingRule::volume ? BoxFit::smallest : BoxFit::pca;
+    return options_.rule == SlicingRule::volume ? BoxFit::aligned : BoxFit::pca;
   }
   [[nodiscard]] double padding() const { return options_.padding * grid_.size; }
 
@@ -83,15 +90,34 @@ private:
   void examine(const std::vector<int>& fresh) {
     parallel_for(0, fresh.size(), 1, [&](std::size_t n) {
       const auto at = static_cast<std::size_t>(fresh[n]);
-      BoxNode& node = tree_.nodes[at];
-      parallel_for(0, 3, 1, [&](std::size_t axis) {
-        node.sections[axis] = cross_section(grid_, owners_, static_cast<std::uint32_t>(at), node.box,
-                                            static_cast<int>(axis), options_.cross_section);
-      });
-      node.prismatic_ratio =
-          prismatic_ratio(node.sections[0], static_cast<std::size_t>(margin_of(node)));
-      node.cube_ratio = cube_ratio(node.box);
-      candidates_[at] = best_cut(at, node.stop);
+      measure(at);
+      candidates_[at] = best_cut(at, tree_.nodes[at].stop);
+    });
+  }
+
+  void measure(std::size_t at) {
+    BoxNode& node = tree_.nodes[at];
+    parallel_for(0, 3, 1, [&](std::size_t axis) {
+      node.sections[axis] = cross_section(grid_, owners_, static_cast<std::uint32_t>(at), node.box,
+                                          static_cast<int>(axis), options_.cross_section);
+    });
+    node.prismatic_ratio =
+        prismatic_ratio(node.sections[0], static_cast<std::size_t>(margin_of(node)));
+    node.cube_ratio = cube_ratio(node.box);
+  }
+
+  /// A box that is not cut again need not lie in the frame that was best for cutting.
+  void tighten_leaves() {
+    const std::vector<int> leaves = tree_.cover();
+    parallel_for(0, leaves.size(), 1, [&](std::size_t n) {
+      const auto at = static_cast<std::size_t>(leaves[n]);
+      BoxNode& leaf = tree_.nodes[at];
+      const OrientedBox smallest =
+          tight_box(grid_, leaf.voxels, BoxFit::smallest, leaf.box.axes, padding());
+      if (smallest.volume() < worth_turning * leaf.box.volume()) {
+        leaf.box = smallest;
+        measure(at);
+      }
     });
   }
 

@@ -89,6 +89,12 @@ private:
 /// Volumes this near to each other (relatively) are alike: the earlier candidate wins.
 constexpr double tie = 1e-9;
 
+// BoxFit::aligned leaves the frame of the parent only for a box that is smaller by these factors.
+// Over eight models at depth 5, the summed volume of the boxes relative to the model's was 2.37
+// without handicaps, 2.15 with 1.05 and 1.25, 2.10 with these.
+constexpr double principal_handicap = 1.2;
+constexpr double tilted_handicap = 2.0;
+
 } // namespace
 
 std::vector<Vec3> hull_corners(const VoxelGrid& grid, std::span<const std::uint32_t> voxels) {
@@ -115,18 +121,24 @@ OrientedBox tight_box(const VoxelGrid& grid, std::span<const std::uint32_t> voxe
   }
   const std::vector<Vec3> corners = hull_corners(grid, voxels);
   const Mat3 principal = principal_axes(centers).axes;
-  OrientedBox best = box_in_frame(principal, corners);
-  if (fit == BoxFit::smallest) {
-    const auto consider = [&](const OrientedBox& box) {
-      if (box.padded(padding).volume() < (1 - tie) * best.padded(padding).volume()) {
-        best = box;
-      }
-    };
-    consider(box_in_frame(parent_axes, corners));
-    consider(box_in_frame(grid.axes, corners));
-    consider(minimum_box(corners));
+  if (fit == BoxFit::pca) {
+    return sorted_by_length(box_in_frame(principal, corners).padded(padding));
   }
-  return sorted_by_length(best.padded(padding));
+  const bool any_frame = fit == BoxFit::smallest;
+  OrientedBox best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const OrientedBox& tight, double handicap) {
+    const OrientedBox box = tight.padded(padding);
+    if (handicap * box.volume() < (1 - tie) * least) {
+      least = handicap * box.volume();
+      best = box;
+    }
+  };
+  consider(box_in_frame(parent_axes, corners), 1);
+  consider(box_in_frame(grid.axes, corners), 1);
+  consider(box_in_frame(principal, corners), any_frame ? 1 : principal_handicap);
+  consider(minimum_box(corners), any_frame ? 1 : tilted_handicap);
+  return sorted_by_length(best);
 }
 
 } // namespace cagewright
