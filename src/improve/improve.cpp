@@ -100,12 +100,15 @@ private:
     reduce(Placement::outside_patch, std::max(budget_, static_cast<std::size_t>(careful)),
            progress.part(0, 0.2));
     reduce(Placement::clear_of_model, budget_, progress.part(0.2, 1));
-    // A cage that is stuck may have grown into its own way: tightened, it often goes on.
+    // A cage that is stuck may have grown into its own way: tightened, and with less regard to the
+    // shape of its faces, it often goes on.
     constexpr int attempts = 3;
     for (int i = 0; i < attempts && over_budget() && !progress.cancelled(); ++i) {
       const std::size_t before = cage_.mesh.vertex_count();
       relax_steps(4, Progress());
       most_valence_ += 2;
+      limits_.worst_defect *= 2;
+      limits_.sharpest_bend = (limits_.sharpest_bend - 1) / 2;
       reduce(Placement::clear_of_model, budget_, Progress());
       if (cage_.mesh.vertex_count() == before) {
         break;
@@ -139,14 +142,17 @@ private:
       }
     }
     cage_ = std::move(kept);
-    return best;
+    return std::min(best, relax_steps(6, Progress()));
   }
 
   [[nodiscard]] bool over_budget() const { return cage_.mesh.vertex_count() > budget_; }
 
   void reduce(Placement placement, std::size_t vertices, const Progress& progress) {
     simplify(cage_, guard_, objective_,
-             {.vertices = vertices, .placement = placement, .most_valence = most_valence_},
+             {.vertices = vertices,
+              .placement = placement,
+              .most_valence = most_valence_,
+              .limits = limits_},
              progress);
   }
 
@@ -168,6 +174,7 @@ private:
   Objective objective_;
   WorkingCage cage_;
   std::size_t most_valence_;
+  ShapeLimits limits_;
 };
 
 } // namespace

@@ -1,5 +1,7 @@
 #include "improve/objective.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,22 +11,15 @@ namespace cagewright {
 
 namespace {
 
-// Dunavant's rule of degree 4 on the triangle ("High degree efficient symmetrical Gaussian
-// quadrature rules for the triangle", 1985).
+// Exact for quadratic functions on the triangle (Strang and Fix, 1973).
 struct Node {
   double weight;
   double at[3];
 };
-constexpr double w1 = 0.223381589678011;
-constexpr double w2 = 0.109951743655322;
-constexpr double a1 = 0.445948490915965;
-constexpr double a2 = 0.091576213509771;
-constexpr std::array<Node, 6> rule = {{{w1, {a1, a1, 1 - 2 * a1}},
-                                       {w1, {a1, 1 - 2 * a1, a1}},
-                                       {w1, {1 - 2 * a1, a1, a1}},
-                                       {w2, {a2, a2, 1 - 2 * a2}},
-                                       {w2, {a2, 1 - 2 * a2, a2}},
-                                       {w2, {1 - 2 * a2, a2, a2}}}};
+constexpr double near = 2.0 / 3;
+constexpr double far = 1.0 / 6;
+constexpr std::array<Node, 3> rule = {
+    {{1.0 / 3, {near, far, far}}, {1.0 / 3, {far, near, far}}, {1.0 / 3, {far, far, near}}}};
 
 double six_volumes(const Corners& t, const Vec3& origin) {
   return (t[0] - origin).dot((t[1] - origin).cross(t[2] - origin));
@@ -79,15 +74,26 @@ double Objective::volume_change(const CageMesh& cage, const Patch& patch) {
   return sum / 6;
 }
 
-double Objective::change(const CageMesh& cage, const Patch& patch) const {
+double Objective::change(const CageMesh& cage, std::span<const double> face_values,
+                         const Patch& patch) const {
   double sum = volume_change(cage, patch);
   for (const Index f : patch.removed) {
-    sum -= face(corners_of(cage, f));
+    sum -= face_values[f];
   }
   for (const Triangle& t : patch.added) {
     sum += face(corners_after(cage, patch, t));
   }
   return sum;
+}
+
+std::vector<double> Objective::face_values(const CageMesh& cage) const {
+  std::vector<double> values(cage.face_end(), 0);
+  parallel_for(0, values.size(), 1, [&](std::size_t f) {
+    if (cage.has_face(static_cast<Index>(f))) {
+      values[f] = face(corners_of(cage, static_cast<Index>(f)));
+    }
+  });
+  return values;
 }
 
 double Objective::total(const CageMesh& cage) const {

@@ -4,6 +4,10 @@
 
 #include "improve/guard.h"
 
+#include <limits>
+#include <span>
+#include <vector>
+
 namespace cagewright {
 
 /// How the parts of the objective are weighted. The objective of a cage is its volume, plus the
@@ -11,8 +15,8 @@ namespace cagewright {
 /// diagonal), plus shape * D * area * x^2 for each face, x = (a^2 + b^2 + c^2) / (4 sqrt(3) A) - 1
 /// for a face of sides a, b, c and area A: zero when equilateral, large for needles.
 struct ObjectiveWeights {
-  double square = 20;      ///< large gaps count more than small ones: no spikes
-  double shape = 3e-4;     ///< a distance in diagonals that a better shape is worth
+  double square = 40;      ///< large gaps count more than small ones: no spikes
+  double shape = 7e-4;     ///< a distance in diagonals that a better shape is worth
   double typical_area = 0; ///< `area` above, in the model's units: that of a typical face
 };
 
@@ -44,8 +48,12 @@ public:
   /// A face's own part: the integral of the gap, by six nearest points, and the shape.
   [[nodiscard]] double face(const Corners& t) const;
 
-  /// The change of the whole objective by a patch.
-  [[nodiscard]] double change(const CageMesh& cage, const Patch& patch) const;
+  /// The change of the whole objective by a patch, given the parts of the present faces.
+  [[nodiscard]] double change(const CageMesh& cage, std::span<const double> face_values,
+                              const Patch& patch) const;
+
+  /// The parts of all faces, by number; 0 for those that are not there.
+  [[nodiscard]] std::vector<double> face_values(const CageMesh& cage) const;
 
   /// The change of the cage's volume by a patch.
   static double volume_change(const CageMesh& cage, const Patch& patch);

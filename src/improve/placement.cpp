@@ -16,7 +16,7 @@ namespace {
 constexpr double margin = 1.02;
 constexpr int most_rounds = 12;
 // How often the objective is taken anew at a better place.
-constexpr int refreshes = 3;
+constexpr int refreshes = 2;
 
 struct Quadratic {
   Vec3 gradient = Vec3::Zero();
@@ -186,7 +186,8 @@ private:
       }
       sides[k] = {normal, normal.dot(t[k])};
     }
-    return objective_.model().tree.highest(plane, sides, -guard_.clearance(), most);
+    constexpr double error = 0.2; // any of the higher points will do: there will be another round
+    return objective_.model().tree.highest(plane, sides, -guard_.clearance(), most, error);
   }
 
   const Guard& guard_;

@@ -108,6 +108,7 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
   std::size_t total = 0;
   for (;;) {
     const CageMesh& mesh = cage.mesh;
+    const std::vector<double> values = objective.face_values(mesh);
     const std::vector<Change> changes = ranked(mesh, [&](Index a, Index b) {
       std::optional<Change> change;
       std::optional<Patch> patch = mesh.flip(a, b);
@@ -122,7 +123,7 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
       if (!keeps_shape(mesh, *patch)) {
         return change;
       }
-      const double gain = -objective.change(mesh, *patch);
+      const double gain = -objective.change(mesh, values, *patch);
       if (gain > 0 && !guard.too_near(mesh, *patch)) {
         change = Change{gain, std::move(*patch)};
       }
@@ -139,6 +140,7 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
 std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
                         std::size_t count, std::size_t most_valence) {
   const CageMesh& mesh = cage.mesh;
+  const std::vector<double> values = objective.face_values(mesh);
   const std::vector<Change> changes = ranked(mesh, [&](Index a, Index b) {
     std::optional<Change> change;
     Patch patch = mesh.split(a, b);
@@ -153,7 +155,7 @@ std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& 
     }
     patch.position = *position;
     if (keeps_shape(mesh, patch)) {
-      change = Change{-objective.change(mesh, patch), std::move(patch)};
+      change = Change{-objective.change(mesh, values, patch), std::move(patch)};
     }
     return change;
   });

@@ -33,7 +33,11 @@ public:
   Simplifier(WorkingCage& cage, const Guard& guard, const Objective& objective,
              const SimplifyOptions& options)
       : cage_(cage), guard_(guard), objective_(objective), options_(options),
-        stamps_(cage.mesh.vertex_end(), 0), failed_(cage.mesh.vertex_end()) {}
+        stamps_(cage.mesh.vertex_end(), 0), failed_(cage.mesh.vertex_end()) {
+    if (options.placement == Placement::clear_of_model) {
+      values_ = objective.face_values(cage.mesh);
+    }
+  }
 
   bool run(const Progress& progress) {
     const std::size_t start = cage_.mesh.vertex_count();
@@ -47,11 +51,7 @@ public:
       if (queue_.empty() && !retry()) {
         break;
       }
-      if (!queue_.empty()) {
-        const Candidate best = queue_.top();
-        queue_.pop();
-        take(best);
-      }
+      take_next();
       const std::size_t done = start - cage_.mesh.vertex_count();
       progress(static_cast<double>(done) / static_cast<double>(start - options_.vertices),
                "simplify");
@@ -102,12 +102,13 @@ private:
       return std::nullopt;
     }
     patch->position = *position;
-    if (!keeps_shape(cage_.mesh, *patch) || guard_.loses_a_part(cage_.mesh, *patch)) {
+    if (!keeps_shape(cage_.mesh, *patch, options_.limits) ||
+        guard_.loses_a_part(cage_.mesh, *patch)) {
       return std::nullopt;
     }
     const double cost = options_.placement == Placement::outside_patch
                             ? quick_cost(*patch)
-                            : objective_.change(cage_.mesh, *patch);
+                            : objective_.change(cage_.mesh, values_, *patch);
     return Candidate{cost, edge, {stamps_[edge[0]], stamps_[edge[1]]}, *position};
   }
 
@@ -134,18 +135,33 @@ private:
   }
 
   // The cheapest candidate is collapsed, unless its surroundings have changed since it was
-  // evaluated: then it is evaluated again.
+  // evaluated: then it is evaluated again, along with others near the top for which that holds.
+  void take_next() {
+    constexpr std::size_t batch = 8;
+    std::vector<Edge> stale;
+    while (!queue_.empty() && stale.size() < batch) {
+      const Candidate best = queue_.top();
+      const auto& [u, v] = best.edge;
+      const bool fresh = best.stamps == std::array{stamps_[u], stamps_[v]};
+      if (fresh && stale.empty()) {
+        queue_.pop();
+        take(best);
+        return;
+      }
+      if (fresh) {
+        break;
+      }
+      queue_.pop();
+      if (cage_.mesh.has_vertex(u) && cage_.mesh.has_vertex(v) &&
+          cage_.mesh.face_left_of(u, v) != no_index) {
+        stale.push_back(best.edge);
+      }
+    }
+    offer(stale);
+  }
+
   void take(const Candidate& candidate) {
     const auto& [u, v] = candidate.edge;
-    if (!cage_.mesh.has_vertex(u) || !cage_.mesh.has_vertex(v)) {
-      return;
-    }
-    if (candidate.stamps != std::array{stamps_[u], stamps_[v]}) {
-      if (cage_.mesh.face_left_of(u, v) != no_index) {
-        offer({candidate.edge});
-      }
-      return;
-    }
     Patch patch = *cage_.mesh.collapse(u, v);
     patch.position = candidate.position;
     // Any other part of the cage may have moved here since.
@@ -154,7 +170,13 @@ private:
       failed_[v].push_back(candidate.edge);
       return;
     }
-    cage_.apply(patch);
+    const std::vector<Index> added = cage_.apply(patch);
+    ++stamps_[v];
+    if (!values_.empty()) {
+      parallel_for(0, added.size(), 1, [&](std::size_t i) {
+        values_[added[i]] = objective_.face(corners_of(cage_.mesh, added[i]));
+      });
+    }
     changed_ = true;
     std::vector<Edge> again;
     touch(u, again);
@@ -194,6 +216,7 @@ private:
   const Guard& guard_;
   const Objective& objective_;
   SimplifyOptions options_;
+  std::vector<double> values_;        // of the faces, by number: their parts of the objective
   std::vector<std::uint32_t> stamps_; // of a vertex: how often the faces at it have changed
   std::vector<std::vector<Edge>> failed_;
   std::priority_queue<Candidate> queue_;
@@ -202,14 +225,15 @@ private:
 
 } // namespace
 
-void WorkingCage::apply(const Patch& patch) {
-  const std::vector<Index> added = mesh.apply(patch);
+std::vector<Index> WorkingCage::apply(const Patch& patch) {
+  std::vector<Index> added = mesh.apply(patch);
   for (const Index f : patch.removed) {
     boxes.update(mesh, f);
   }
   for (const Index f : added) {
     boxes.update(mesh, f);
   }
+  return added;
 }
 
 bool simplify(WorkingCage& cage, const Guard& guard, const Objective& objective,
@@ -217,9 +241,7 @@ bool simplify(WorkingCage& cage, const Guard& guard, const Objective& objective,
   return Simplifier(cage, guard, objective, options).run(progress);
 }
 
-bool keeps_shape(const CageMesh& cage, const Patch& patch) {
-  constexpr double sharpest = -0.9; // 154 degrees between the normals: 26 between the faces
-  constexpr double worst_defect = 8;
+bool keeps_shape(const CageMesh& cage, const Patch& patch, const ShapeLimits& limits) {
   double old_bend = 1;
   double old_defect = 0;
   for (const Index f : patch.removed) {
@@ -231,8 +253,8 @@ bool keeps_shape(const CageMesh& cage, const Patch& patch) {
       old_bend = std::min(old_bend, bend(at, corners_of(cage, other)));
     }
   }
-  const double least_bend = std::min(sharpest, old_bend);
-  const double most_defect = std::max(worst_defect, old_defect);
+  const double least_bend = std::min(limits.sharpest_bend, old_bend);
+  const double most_defect = std::max(limits.worst_defect, old_defect);
   for (std::size_t i = 0; i < patch.added.size(); ++i) {
     const Triangle& t = patch.added[i];
     const Corners at = corners_after(cage, patch, t);

@@ -5,6 +5,8 @@
 #include "core/progress.h"
 #include "improve/objective.h"
 
+#include <vector>
+
 namespace cagewright {
 
 /// How the vertex that remains of an edge is placed.
@@ -13,18 +15,25 @@ enum class Placement {
   clear_of_model, ///< where it lowers the objective, clear of the model
 };
 
+/// What a change may not do to the shape of the faces, unless it was as bad before.
+struct ShapeLimits {
+  double worst_defect = 8;     ///< of a face: see shape_defect()
+  double sharpest_bend = -0.9; ///< of two neighbours: see bend(); 26 degrees between the faces
+};
+
 struct SimplifyOptions {
   std::size_t vertices = 4;
   Placement placement = Placement::clear_of_model;
   std::size_t most_valence = 10;
+  ShapeLimits limits = {};
 };
 
 /// The cage under change, and what has to be kept beside it.
 struct WorkingCage {
   explicit WorkingCage(TriangleView start) : mesh(start), boxes(mesh) {}
 
-  /// Makes the change and keeps the boxes up to date.
-  void apply(const Patch& patch);
+  /// Makes the change and keeps the boxes up to date. \returns the new faces
+  std::vector<Index> apply(const Patch& patch);
 
   CageMesh mesh;
   FaceBoxes boxes;
@@ -39,6 +48,6 @@ bool simplify(WorkingCage& cage, const Guard& guard, const Objective& objective,
 
 /// True when no two faces that meet at the patch's new faces fold onto each other more sharply than
 /// before, and no new face is a needle unless an old one was worse.
-bool keeps_shape(const CageMesh& cage, const Patch& patch);
+bool keeps_shape(const CageMesh& cage, const Patch& patch, const ShapeLimits& limits = {});
 
 } // namespace cagewright

@@ -8,18 +8,28 @@ namespace cagewright {
 
 namespace {
 
-constexpr Index leaf_size = 4;
-// Median splits halve the count at every level: 2^32 triangles need 32.
+// Median splits quarter the count at every level: 2^31 triangles need 16, with three siblings
+// waiting at each.
 constexpr int deepest = 64;
 
-double squared_distance(const Vec3& center, const Vec3& half, const Vec3& p) {
-  return ((p - center).cwiseAbs() - half).cwiseMax(0).squaredNorm();
-}
+// Rounding of a few operations on coordinates up to about four, in single precision. All tests of
+// boxes err by so much towards visiting them.
+constexpr float rounding = 4e-6F;
 
-// Lower bounds of the distance between a triangle and boxes: the greatest over the axes of the
-// triangle's box, its normal, and the outward normals of its sides.
+// Half the size of the box of an empty slot.
+constexpr float nothing = -1e30F;
+
+// Lower bounds of the distance to a triangle: along the axes of its box, its normal, and the
+// outward normals of its sides.
 class TriangleBound {
 public:
+  struct Axis {
+    Vec3 normal; // length one
+    double low = 0;
+    double high = 0;
+    bool two_sided = false;
+  };
+
   explicit TriangleBound(const Corners& t) : corners_(t) {
     const Vec3 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]);
     const Vec3 high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
@@ -39,23 +49,7 @@ public:
     }
   }
 
-  [[nodiscard]] bool beyond(const Vec3& center, const Vec3& half, double distance) const {
-    const Vec3 gap = ((center - center_).cwiseAbs() - half - half_).cwiseMax(0);
-    if (gap.squaredNorm() > distance * distance) {
-      return true;
-    }
-    for (int i = 0; i < count_; ++i) {
-      const Axis& axis = axes_[i];
-      const double reach = axis.magnitude.dot(half) + distance;
-      const double at = axis.normal.dot(center);
-      if (at - reach > axis.high || (axis.two_sided && at + reach < axis.low)) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  // The same for a triangle.
+  // True only if the other triangle is further away than the distance.
   [[nodiscard]] bool beyond(const Corners& t, double distance) const {
     for (int k = 0; k < 3; ++k) {
       const double low = std::min({t[0][k], t[1][k], t[2][k]});
@@ -77,21 +71,18 @@ public:
     return false;
   }
 
-private:
-  struct Axis {
-    Vec3 normal;
-    Vec3 magnitude;
-    double low = 0;
-    double high = 0;
-    bool two_sided = false;
-  };
+  [[nodiscard]] std::span<const Axis> axes() const {
+    return std::span(axes_).first(static_cast<std::size_t>(count_));
+  }
+  [[nodiscard]] const Vec3& center() const { return center_; }
+  [[nodiscard]] const Vec3& half() const { return half_; }
 
+private:
   void add(const Vec3& normal, bool two_sided) {
     const double a = normal.dot(corners_[0]);
     const double b = normal.dot(corners_[1]);
     const double c = normal.dot(corners_[2]);
-    axes_[count_++] = {normal, normal.cwiseAbs(), std::min({a, b, c}), std::max({a, b, c}),
-                       two_sided};
+    axes_[count_++] = {normal, std::min({a, b, c}), std::max({a, b, c}), two_sided};
   }
 
   Corners corners_;
@@ -146,55 +137,85 @@ SurfaceTree::SurfaceTree(TriangleView model) {
 }
 
 void SurfaceTree::build(std::span<const Corners> corners) {
+  struct Range { // of triangles in `order`
+    Index first, count;
+  };
+  Box3 all;
   std::vector<Vec3> middles;
   middles.reserve(corners.size());
   for (const Corners& t : corners) {
     middles.emplace_back((t[0] + t[1] + t[2]) / 3);
+    for (const Vec3& p : t) {
+      all.extend(p);
+    }
   }
+  if (corners.empty()) {
+    return;
+  }
+  origin_ = all.center();
+  const double size = all.sizes().maxCoeff() / 2;
+  scale_ = size > 0 ? 1 / size : 1;
   std::vector<Index> order(corners.size());
   std::iota(order.begin(), order.end(), 0U);
-  struct Task {
-    Index node, first, count;
-  };
-  std::vector<Task> tasks;
-  if (!order.empty()) {
-    nodes_.emplace_back();
-    tasks.push_back({0, 0, static_cast<Index>(order.size())});
-  }
-  while (!tasks.empty()) {
-    const Task task = tasks.back();
-    tasks.pop_back();
-    Box3 box;
+  // The upper half of the range, after sorting its two halves along the axis of greatest spread.
+  const auto cut = [&](Range& range) {
     Box3 spread;
-    for (Index i = task.first; i < task.first + task.count; ++i) {
-      for (const Vec3& p : corners[order[i]]) {
-        box.extend(p);
-      }
+    for (Index i = range.first; i < range.first + range.count; ++i) {
       spread.extend(middles[order[i]]);
-    }
-    // A hair larger than the rounding of center and half.
-    const double hair = 4e-16 * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff();
-    nodes_[task.node].center = box.center();
-    nodes_[task.node].half = (box.sizes() / 2).array() + hair;
-    if (task.count <= leaf_size) {
-      nodes_[task.node].first = task.first;
-      nodes_[task.node].count = task.count;
-      continue;
     }
     Eigen::Index axis = 0;
     spread.sizes().maxCoeff(&axis);
-    const Index middle = task.first + task.count / 2;
-    std::nth_element(order.begin() + task.first, order.begin() + middle,
-                     order.begin() + task.first + task.count, [&](Index a, Index b) {
+    const Index half = range.count / 2;
+    std::nth_element(order.begin() + range.first, order.begin() + range.first + half,
+                     order.begin() + range.first + range.count, [&](Index a, Index b) {
                        return middles[a][axis] != middles[b][axis]
                                   ? middles[a][axis] < middles[b][axis]
                                   : a < b;
                      });
-    const auto child = static_cast<Index>(nodes_.size());
-    nodes_[task.node].first = child;
-    nodes_.resize(nodes_.size() + 2);
-    tasks.push_back({child + 1, middle, task.first + task.count - middle});
-    tasks.push_back({child, task.first, middle - task.first});
+    const Range upper{range.first + half, range.count - half};
+    range.count = half;
+    return upper;
+  };
+  struct Task {
+    Index node;
+    Range range;
+  };
+  nodes_.emplace_back();
+  std::vector<Task> tasks = {{0, {0, static_cast<Index>(order.size())}}};
+  while (!tasks.empty()) {
+    const Task task = tasks.back();
+    tasks.pop_back();
+    std::array<Range, width> ranges{task.range, Range{}, Range{}, Range{}};
+    if (task.range.count > 1) {
+      ranges[2] = cut(ranges[0]);
+      for (const int i : {0, 2}) {
+        if (ranges[i].count > 1) {
+          ranges[i + 1] = cut(ranges[i]);
+        }
+      }
+    }
+    for (int i = 0; i < width; ++i) {
+      Box3 box;
+      for (Index k = ranges[i].first; k < ranges[i].first + ranges[i].count; ++k) {
+        for (const Vec3& p : corners[order[k]]) {
+          box.extend(p);
+        }
+      }
+      for (int k = 0; k < 3; ++k) {
+        const bool none = ranges[i].count == 0;
+        nodes_[task.node].center[k][i] =
+            none ? 0 : static_cast<float>((box.center()[k] - origin_[k]) * scale_);
+        nodes_[task.node].half[k][i] =
+            none ? nothing : static_cast<float>(box.sizes()[k] / 2 * scale_) + rounding / 4;
+      }
+      Index child = ranges[i].first | leaf_bit;
+      if (ranges[i].count > 1) {
+        child = static_cast<Index>(nodes_.size());
+        nodes_.emplace_back();
+        tasks.push_back({child, ranges[i]});
+      }
+      nodes_[task.node].child[i] = child;
+    }
   }
   triangles_.reserve(order.size());
   for (const Index i : order) {
@@ -202,40 +223,61 @@ void SurfaceTree::build(std::span<const Corners> corners) {
   }
 }
 
+std::array<float, 3> SurfaceTree::to_frame(const Vec3& p) const {
+  const Vec3 q = (p - origin_) * scale_;
+  return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
+}
+
 SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double error) const {
   Nearest best;
-  const double factor = (1 + error) * (1 + error);
   double bound = within * within;
+  const std::array<float, 3> q = to_frame(p);
+  // Squared distances in the frame beyond which a box cannot hold what is sought.
+  const double shrink = scale_ * scale_ / ((1 + error) * (1 + error));
+  const auto limit = [&] {
+    const double length = std::sqrt(bound * shrink) + rounding;
+    return static_cast<float>(std::min(length * length, 1e30));
+  };
   struct Entry {
-    Index node;
-    double squared;
+    float squared;
+    Index child;
   };
   std::array<Entry, deepest> stack;
   int top = 0;
+  float most = limit();
   if (!nodes_.empty()) {
-    stack[top++] = {0, squared_distance(nodes_[0].center, nodes_[0].half, p)};
+    stack[top++] = {0, 0};
   }
   while (top > 0) {
     const Entry entry = stack[--top];
-    if (entry.squared * factor >= bound) {
+    if (entry.squared >= most) {
       continue;
     }
-    const Node& node = nodes_[entry.node];
-    for (Index i = node.first; i < node.first + node.count; ++i) {
-      const Vec3 q = nearest_in_triangle(p, triangles_[i]);
-      const double squared = (q - p).squaredNorm();
+    if ((entry.child & leaf_bit) != 0) {
+      const Vec3 at = nearest_in_triangle(p, triangles_[entry.child & ~leaf_bit]);
+      const double squared = (at - p).squaredNorm();
       if (squared < bound) {
         bound = squared;
-        best = {0, q};
+        best.point = at;
+        most = limit();
       }
+      continue;
     }
-    if (node.count == 0) {
-      const Index a = node.first;
-      const Entry near{a, squared_distance(nodes_[a].center, nodes_[a].half, p)};
-      const Entry far{a + 1, squared_distance(nodes_[a + 1].center, nodes_[a + 1].half, p)};
-      const bool swap = far.squared < near.squared;
-      stack[top++] = swap ? near : far;
-      stack[top++] = swap ? far : near;
+    const Node& node = nodes_[entry.child];
+    Lanes squared = Lanes::Zero();
+    for (int k = 0; k < 3; ++k) {
+      squared += ((node.center[k] - q[k]).abs() - node.half[k]).max(0).square();
+    }
+    // The farthest first on the stack: the nearest is looked at next.
+    const int begin = top;
+    for (int i = 0; i < width; ++i) {
+      if (squared[i] < most) {
+        int at = top++;
+        for (; at > begin && stack[at - 1].squared < squared[i]; --at) {
+          stack[at] = stack[at - 1];
+        }
+        stack[at] = {squared[i], node.child[i]};
+      }
     }
   }
   if (bound < within * within) {
@@ -244,105 +286,143 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double e
   return best;
 }
 
-std::optional<NearestPair> SurfaceTree::too_near(const Corners& triangle, double distance) const {
+// Calls visit(model triangle) -> double for all that may be within the distance, which from then on
+// is what visit returns.
+template <class Visit>
+void SurfaceTree::visit_near(const Corners& triangle, double within, Visit visit) const {
   const TriangleBound bound(triangle);
+  const std::array<float, 3> center = to_frame(bound.center());
+  struct FloatAxis {
+    float normal[3];
+    float low, high;
+  };
+  std::array<FloatAxis, 4> axes;
+  int count = 0;
+  for (const TriangleBound::Axis& axis : bound.axes()) {
+    FloatAxis& a = axes[count++];
+    for (int k = 0; k < 3; ++k) {
+      a.normal[k] = static_cast<float>(axis.normal[k]);
+    }
+    const double shift = axis.normal.dot(origin_);
+    a.high = static_cast<float>((axis.high - shift) * scale_);
+    a.low = axis.two_sided ? static_cast<float>((axis.low - shift) * scale_) : -1e30F;
+  }
+  float half[3];
+  for (int k = 0; k < 3; ++k) {
+    half[k] = length_in_frame(bound.half()[k]);
+  }
   std::array<Index, deepest> stack;
   int top = 0;
   if (!nodes_.empty()) {
     stack[top++] = 0;
   }
   while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (bound.beyond(node.center, node.half, distance)) {
+    const Index child = stack[--top];
+    if ((child & leaf_bit) != 0) {
+      const Corners& other = triangles_[child & ~leaf_bit];
+      if (!bound.beyond(other, within)) {
+        within = visit(other);
+        if (within <= 0) {
+          return;
+        }
+      }
       continue;
     }
-    for (Index i = node.first; i < node.first + node.count; ++i) {
-      if (bound.beyond(triangles_[i], distance)) {
-        continue;
-      }
-      const NearestPair pair = nearest_of_triangles(triangle, triangles_[i]);
-      if (pair.squared < distance * distance) {
-        return pair;
-      }
+    const Node& node = nodes_[child];
+    const float reach = length_in_frame(within) + rounding;
+    Lanes squared = Lanes::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const float grown = half[k] + rounding;
+      squared += ((node.center[k] - center[k]).abs() - node.half[k] - grown).max(0).square();
     }
-    if (node.count == 0) {
-      stack[top++] = node.first + 1;
-      stack[top++] = node.first;
+    Eigen::Array<bool, width, 1> beyond = squared > reach * reach;
+    for (int a = 0; a < count; ++a) {
+      const FloatAxis& axis = axes[a];
+      const Lanes at = node.center[0] * axis.normal[0] + node.center[1] * axis.normal[1] +
+                       node.center[2] * axis.normal[2];
+      const Lanes spread = node.half[0] * std::abs(axis.normal[0]) +
+                           node.half[1] * std::abs(axis.normal[1]) +
+                           node.half[2] * std::abs(axis.normal[2]) + reach;
+      beyond = beyond || at - spread > axis.high || at + spread < axis.low;
+    }
+    for (int i = width - 1; i >= 0; --i) {
+      if (!beyond[i] && node.half[0][i] >= 0) {
+        stack[top++] = node.child[i];
+      }
     }
   }
-  return std::nullopt;
+}
+
+std::optional<NearestPair> SurfaceTree::too_near(const Corners& triangle, double distance) const {
+  std::optional<NearestPair> found;
+  visit_near(triangle, distance, [&](const Corners& other) {
+    const NearestPair pair = nearest_of_triangles(triangle, other);
+    if (pair.squared < distance * distance) {
+      found = pair;
+      return 0.0; // enough
+    }
+    return distance;
+  });
+  return found;
 }
 
 std::optional<NearestPair> SurfaceTree::nearest_to(const Corners& triangle, double within) const {
   std::optional<NearestPair> best;
-  const TriangleBound bound(triangle);
-  std::array<Index, deepest> stack;
-  int top = 0;
-  if (!nodes_.empty()) {
-    stack[top++] = 0;
-  }
-  while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (bound.beyond(node.center, node.half, within)) {
-      continue;
+  double least = within;
+  visit_near(triangle, within, [&](const Corners& other) {
+    const NearestPair pair = nearest_of_triangles(triangle, other);
+    if (pair.squared < least * least) {
+      best = pair;
+      least = std::sqrt(pair.squared);
     }
-    for (Index i = node.first; i < node.first + node.count; ++i) {
-      if (bound.beyond(triangles_[i], within)) {
-        continue;
-      }
-      const NearestPair pair = nearest_of_triangles(triangle, triangles_[i]);
-      if (pair.squared < within * within) {
-        best = pair;
-        within = std::sqrt(pair.squared);
-      }
-    }
-    if (node.count == 0) {
-      stack[top++] = node.first + 1;
-      stack[top++] = node.first;
-    }
-  }
+    return least;
+  });
   return best;
 }
 
 std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
                                                          const std::array<HalfSpace, 3>& sides,
-                                                         double least, double most) const {
+                                                         double least, double most,
+                                                         double error) const {
   std::optional<Highest> best;
-  const Vec3 up = plane.normal.cwiseAbs();
-  const std::array<Vec3, 3> across = {sides[0].normal.cwiseAbs(), sides[1].normal.cwiseAbs(),
-                                      sides[2].normal.cwiseAbs()};
+  const double floor = least;
   const HalfSpace ceiling{plane.normal, plane.offset + most};
-  const auto reach = [&](const Node& node) { // the greatest height in the node, or none
-    const double height = plane.above(node.center);
-    const double half = up.dot(node.half);
-    if (height - half > most) {
-      return -std::numeric_limits<double>::infinity();
-    }
-    for (int i = 0; i < 3; ++i) {
-      if (sides[i].above(node.center) > across[i].dot(node.half)) {
-        return -std::numeric_limits<double>::infinity();
-      }
-    }
-    return height + half;
+  struct FloatPlane {
+    float normal[3];
+    float offset;
   };
+  const auto to_float = [&](const HalfSpace& h) {
+    return FloatPlane{{static_cast<float>(h.normal[0]), static_cast<float>(h.normal[1]),
+                       static_cast<float>(h.normal[2])},
+                      static_cast<float>((h.offset - h.normal.dot(origin_)) * scale_)};
+  };
+  const std::array<FloatPlane, 4> planes = {to_float(plane), to_float(sides[0]), to_float(sides[1]),
+                                            to_float(sides[2])};
+  const float upper = length_in_frame(most) + rounding;
+  float lower = length_in_frame(least) - rounding;
   struct Entry {
-    Index node;
-    double height;
+    float height;
+    Index child;
   };
   std::array<Entry, deepest> stack;
   int top = 0;
   if (!nodes_.empty()) {
-    stack[top++] = {0, reach(nodes_[0])};
+    stack[top++] = {1e30F, 0};
   }
   while (top > 0) {
     const Entry entry = stack[--top];
-    if (entry.height <= least) {
+    if (entry.height <= lower) {
       continue;
     }
-    const Node& node = nodes_[entry.node];
-    for (Index i = node.first; i < node.first + node.count; ++i) {
-      const Corners& t = triangles_[i];
+    if ((entry.child & leaf_bit) != 0) {
+      const Corners& t = triangles_[entry.child & ~leaf_bit];
       if (std::max({plane.above(t[0]), plane.above(t[1]), plane.above(t[2])}) <= least) {
+        continue;
+      }
+      const bool beside = std::any_of(sides.begin(), sides.end(), [&](const HalfSpace& side) {
+        return side.above(t[0]) > 0 && side.above(t[1]) > 0 && side.above(t[2]) > 0;
+      });
+      if (beside) {
         continue;
       }
       Clipped polygon(t);
@@ -354,16 +434,39 @@ std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
         const double height = plane.above(p);
         if (height > least) {
           least = height;
+          lower = length_in_frame(least + error * (least - floor)) - rounding;
           best = {height, p};
         }
       }
+      continue;
     }
-    if (node.count == 0) {
-      const Entry a{node.first, reach(nodes_[node.first])};
-      const Entry b{node.first + 1, reach(nodes_[node.first + 1])};
-      const bool swap = a.height > b.height;
-      stack[top++] = swap ? b : a;
-      stack[top++] = swap ? a : b;
+    const Node& node = nodes_[entry.child];
+    std::array<Lanes, 4> low;
+    Lanes high;
+    for (int a = 0; a < 4; ++a) {
+      const FloatPlane& f = planes[a];
+      const Lanes at = node.center[0] * f.normal[0] + node.center[1] * f.normal[1] +
+                       node.center[2] * f.normal[2] - f.offset;
+      const Lanes spread = node.half[0] * std::abs(f.normal[0]) +
+                           node.half[1] * std::abs(f.normal[1]) +
+                           node.half[2] * std::abs(f.normal[2]);
+      low[a] = at - spread;
+      if (a == 0) {
+        high = at + spread;
+      }
+    }
+    // What lies beyond the sides or the ceiling, as the greatest of its heights above them.
+    const Lanes over = (low[0] - upper).max(low[1].max(low[2]).max(low[3]) - rounding);
+    const int begin = top;
+    for (int i = 0; i < width; ++i) {
+      const bool meets = over[i] <= 0 && high[i] > lower && node.half[0][i] >= 0;
+      if (meets) { // the highest last on the stack: it is looked at next
+        int at = top++;
+        for (; at > begin && stack[at - 1].height > high[i]; --at) {
+          stack[at] = stack[at - 1];
+        }
+        stack[at] = {high[i], node.child[i]};
+      }
     }
   }
   return best;

@@ -52,21 +52,33 @@ public:
   };
 
   /// The point of the model with the greatest height above `plane`, among those inside all three
-  /// `sides` and with heights between `least` and `most`. None: there is none.
+  /// `sides` and with heights between `least` and `most`. None: there is none. With an `error` its
+  /// height above `least` may be too small by this share.
   [[nodiscard]] std::optional<Highest> highest(const HalfSpace& plane,
                                                const std::array<HalfSpace, 3>& sides, double least,
-                                               double most) const;
+                                               double most, double error = 0) const;
 
 private:
-  struct Node {
-    Vec3 center;
-    Vec3 half;
-    Index first = 0; ///< of the triangles of a leaf, or the first of two children
-    Index count = 0; ///< triangles of a leaf; 0: an inner node
+  static constexpr Index leaf_bit = Index{1} << 31U;
+  static constexpr int width = 4;
+  using Lanes = Eigen::Array4f;
+
+  /// Four boxes in the tree's own frame, in single precision, large enough to make up for it.
+  /// Empty slots have boxes that nothing meets.
+  struct alignas(64) Node {
+    Lanes center[3];
+    Lanes half[3];
+    Index child[width]; ///< a node, or a triangle with the leaf bit
   };
-
   void build(std::span<const Corners> corners);
+  [[nodiscard]] std::array<float, 3> to_frame(const Vec3& p) const;
+  [[nodiscard]] float length_in_frame(double length) const {
+    return static_cast<float>(length * scale_);
+  }
+  template <class Visit> void visit_near(const Corners& triangle, double within, Visit visit) const;
 
+  Vec3 origin_ = Vec3::Zero();
+  double scale_ = 1; // the frame is (x - origin) * scale: the model fills about [-1, 1]^3
   std::vector<Corners> triangles_;
   std::vector<Node> nodes_;
 };
