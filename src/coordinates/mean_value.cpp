@@ -257,6 +257,10 @@ PointTile<T> load_points(const MeanValueSolver::Tables& cage, std::span<const Ve
 template <class T, class Out>
 TileReport solve_tile(const MeanValueSolver::Tables& cage, std::span<const Vec3> points,
                       std::span<Out> tile) {
+  if (points.empty()) {
+    std::ranges::fill(tile, Out(0));
+    return {};
+  }
   TileReport report = mean_value_tile(cage, load_points<T>(cage, points), tile.data());
   if (points.size() < 16) {
     for (std::size_t c = 0; c < cage.cage_vertices; ++c) {

@@ -398,7 +398,7 @@ Status NpzReader::read_directory() {
   if (at == std::string::npos) {
     return malformed("not a .npz file, or cut off: it does not end with a zip directory");
   }
-  Fields end(std::string_view(tail).substr(at + 10));
+  Fields end(std::string_view(tail).substr(std::min(at + 10, tail.size())));
   std::uint64_t count = end.take<std::uint16_t>();
   std::uint64_t size = end.take<std::uint32_t>();
   std::uint64_t offset = end.take<std::uint32_t>();

@@ -318,6 +318,15 @@ TEST(MeanValue, LeavesPointsThatAreNoNumbersWithoutWeights) {
   }
 }
 
+TEST(MeanValue, OfNoPointsIsEmpty) {
+  const Result<Weights> weights = mean_value_coordinates(make_cube(), {});
+  ASSERT_TRUE(weights);
+  EXPECT_EQ(weights->points(), 0U);
+  std::vector<double> tile(16 * 8, 7.0);
+  EXPECT_EQ(solver_for(make_cube()).solve({}, tile).undefined, 0);
+  EXPECT_EQ(tile, std::vector<double>(16 * 8, 0.0));
+}
+
 TEST(MeanValue, RefusesWhatIsNoCage) {
   const auto message = [](TriangleMesh cage) {
     const Result<MeanValueSolver> solver = MeanValueSolver::create(TriangleView(cage));

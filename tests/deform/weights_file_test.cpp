@@ -151,6 +151,10 @@ TEST_F(WeightsFile, SaysWhatItIsNot) {
   overwrite(std::string("PK\5\6", 4) + std::string(18, '\0')); // an empty archive
   EXPECT_EQ(refusal(),
             path_.string() + ": not a weights file of cagewright bind: it has no array 'version'");
+  overwrite("PK\5\6 and no more");
+  EXPECT_NE(refusal(), "accepted");
+  overwrite("PK\5\6");
+  EXPECT_NE(refusal(), "accepted");
   std::filesystem::remove(path_);
   EXPECT_EQ(refusal(), path_.string() + ": No such file or directory");
   std::filesystem::create_directory(path_);
