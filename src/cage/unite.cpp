@@ -622,6 +622,47 @@ ExactMesh without_rounding_kinks(const ExactMesh& mesh, const Planes& planes) {
   return FlatRegions(surface, map).simplified(planes);
 }
 
+/// The mesh with its edges of no length (relative to `size`) collapsed. Where planes that differ
+/// only by rounding meet a third, exact corners come out so near to each other that they round to
+/// one. The caller checks that the result is still embedded.
+TriangleMesh without_tiny_edges(const TriangleMesh& mesh, double size) {
+  constexpr double tiny = 1e-10;
+  std::vector<Index> leader(mesh.positions.size());
+  std::iota(leader.begin(), leader.end(), 0U);
+  const auto find = [&leader](Index v) {
+    while (leader[v] != v) {
+      v = leader[v] = leader[leader[v]];
+    }
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = t[i];
+      const Index b = t[(i + 1) % 3];
+      if ((mesh.positions[a] - mesh.positions[b]).norm() <= tiny * size) {
+        const Index low = std::min(find(a), find(b));
+        const Index high = std::max(find(a), find(b));
+        leader[high] = low;
+      }
+    }
+  }
+  TriangleMesh kept;
+  std::vector<Index> index(mesh.positions.size());
+  for (Index v = 0; v < index.size(); ++v) {
+    if (find(v) == v) {
+      index[v] = static_cast<Index>(kept.positions.size());
+      kept.positions.push_back(mesh.positions[v]);
+    }
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Triangle t = {index[find(a)], index[find(b)], index[find(c)]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) {
+      kept.triangles.push_back(t);
+    }
+  }
+  return kept;
+}
+
 TriangleMesh unite_once(std::span<const Hexahedron> solids, double separation, int attempt,
                         const Progress& progress) {
   const std::vector<double> amounts = separations(solids, separation, attempt);
@@ -643,6 +684,7 @@ TriangleMesh unite_once(std::span<const Hexahedron> solids, double separation, i
     result.positions.push_back(rounded(p));
   }
   result.triangles = all.triangles;
+  result = without_tiny_edges(result, box.diagonal().norm());
   if (!is_embedded(result)) {
     throw Failure{"their union does not survive the rounding to doubles"};
   }
