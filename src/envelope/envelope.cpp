@@ -159,7 +159,7 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
   for (std::size_t i = 0; i < factors.size(); ++i) {
     Result<Envelope> next = at_resolution(
         model, options, static_cast<int>(std::lround(least * factors[i])),
-        progress.part(0.2 * static_cast<double>(i), 0.2 * static_cast<double>(i + 1)));
+        progress.part(0.1 * static_cast<double>(i), 0.1 * static_cast<double>(i + 1)));
     if (!next) {
       return next;
     }
@@ -168,6 +168,23 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
     }
     if (best->genus == 0) {
       break;
+    }
+  }
+  // More handles than the vertices can go round: the narrowest are filled.
+  constexpr int vertices_for_a_handle = 8;
+  constexpr std::array<double, 4> closings = {0.01, 0.02, 0.035, 0.06};
+  EnvelopeOptions closed = options;
+  for (std::size_t i = 0;
+       i < closings.size() && vertices_for_a_handle * best->genus > options.vertices; ++i) {
+    closed.closing = std::max(options.closing, closings[i]);
+    Result<Envelope> next = at_resolution(
+        model, closed, static_cast<int>(std::lround(least)),
+        progress.part(0.5 + 0.1 * static_cast<double>(i), 0.6 + 0.1 * static_cast<double>(i)));
+    if (!next) {
+      return next;
+    }
+    if (next->genus < best->genus) {
+      best = std::move(*next);
     }
   }
   return *std::move(best);

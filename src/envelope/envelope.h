@@ -10,7 +10,8 @@ namespace cagewright {
 
 struct EnvelopeOptions {
   /// Voxels along the model's diagonal. 0: chosen so that the envelope has no handles that come
-  /// and go with the resolution, and is no finer than `vertices` warrants.
+  /// and go with the resolution, and is no finer than `vertices` warrants. If the model has more
+  /// handles than that many vertices can go round, the narrowest are then filled.
   int resolution = 0;
   int vertices = 100; ///< of the cage that is to be made of it: guides the choice of resolution
   double clearance = 0.002; ///< least distance to the model, in diagonals of its bounding box

@@ -202,7 +202,8 @@ private:
 
   // All edges once more, if any has been collapsed since the last time.
   bool retry() {
-    if (!std::exchange(changed_, false)) {
+    constexpr int most_retries = 3;
+    if (!std::exchange(changed_, false) || ++retries_ > most_retries) {
       return false;
     }
     for (auto& list : failed_) {
@@ -220,7 +221,8 @@ private:
   std::vector<std::uint32_t> stamps_; // of a vertex: how often the faces at it have changed
   std::vector<std::vector<Edge>> failed_;
   std::priority_queue<Candidate> queue_;
-  bool changed_ = false;
+  bool changed_ = false; // since all edges were last offered
+  int retries_ = 0;
 };
 
 } // namespace
