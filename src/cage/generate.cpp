@@ -4,7 +4,6 @@
 #include "validate/validate_cage.h"
 
 #include <array>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,14 +11,13 @@ namespace cagewright {
 namespace {
 
 /// Boxes grow by distinct amounts up to these parts of a voxel before they are united, so that no
-/// two of their faces coincide. The second and third are for the case that the union, moved to the
-/// model's coordinates, does not survive the rounding.
+/// two of their faces coincide. The second and third, without joints between boxes, are for the case
+/// that the union does not survive the rounding to the model's coordinates.
 constexpr std::array<double, 3> separations = {0.2, 0.17, 0.13};
 
 // Shares of the whole time, for the progress bar.
 constexpr double decomposed = 0.35;
 constexpr double registered = 0.4;
-constexpr double united = 0.9;
 
 /// The leaves' boxes and voxels; the voxels stay in the tree.
 std::vector<BoxContents> contents_of(const BoxTree& tree, const std::vector<int>& leaves) {
@@ -47,13 +45,28 @@ Error not_valid(const ValidityReport& report) {
                                         "); try another resolution or depth"};
 }
 
-Result<Registration> joined_or_not(const std::vector<BoxContents>& contents,
-                                   const BoxDecomposition& boxes, const GenerateOptions& options,
-                                   const Progress& progress) {
-  if (!options.registration) {
-    return keep_apart(contents);
+/// The union of the solids in the model's coordinates, if it is a valid cage there.
+Result<TriangleMesh> cage_of(const std::vector<Hexahedron>& solids, double separation,
+                             const BoxDecomposition& boxes, TriangleView model,
+                             bool allow_pieces, Stopwatch& watch, const Progress& progress) {
+  Result<TriangleMesh> united_solids =
+      unite(solids, {.separation = separation}, progress.part(0, 0.9));
+  watch.lap("union");
+  if (!united_solids) {
+    return united_solids;
   }
-  return register_boxes(in_grid_coordinates(boxes.grid), contents, {}, progress);
+  TriangleMesh cage = to_model(boxes, std::move(*united_solids));
+  const Result<ValidityReport> report =
+      validate_cage(TriangleView(cage), model, {.allow_pieces = allow_pieces, .max_listed = 1},
+                    progress.part(0.9, 1));
+  watch.lap("check");
+  if (!report) {
+    return report.error();
+  }
+  if (!report->valid()) {
+    return not_valid(*report);
+  }
+  return cage;
 }
 
 } // namespace
@@ -70,39 +83,34 @@ Result<GeneratedCage> generate_cage(TriangleView model, const GenerateOptions& o
   made.times = made.boxes.times;
   Stopwatch watch(made.times);
 
-  Result<Registration> registration =
-      joined_or_not(contents_of(made.boxes.tree, made.leaves), made.boxes, options,
-                    progress.part(decomposed, registered));
-  if (!registration) {
-    return registration.error();
+  const std::vector<BoxContents> contents = contents_of(made.boxes.tree, made.leaves);
+  made.registration = keep_apart(contents);
+  if (options.registration) {
+    Result<Registration> joined = register_boxes(in_grid_coordinates(made.boxes.grid), contents, {},
+                                                 progress.part(decomposed, registered));
+    if (!joined) {
+      return joined.error();
+    }
+    made.registration = std::move(*joined);
   }
-  made.registration = std::move(*registration);
   watch.lap("registration");
 
-  std::optional<Error> why;
+  Error why;
   for (const double separation : separations) {
-    Result<TriangleMesh> cage = unite(made.registration.solids, {.separation = separation},
-                                      progress.part(registered, united));
-    if (!cage) {
-      return cage.error();
-    }
-    made.cage = to_model(made.boxes, std::move(*cage));
-    watch.lap("union");
-
-    const Result<ValidityReport> report =
-        validate_cage(TriangleView(made.cage), model,
-                      {.allow_pieces = options.boxes.pieces == Pieces::apart, .max_listed = 1},
-                      progress.part(united, 1));
-    if (!report) {
-      return report.error();
-    }
-    watch.lap("check");
-    if (report->valid()) {
+    Result<TriangleMesh> cage =
+        cage_of(made.registration.solids, separation, made.boxes, model,
+                options.boxes.pieces == Pieces::apart, watch, progress.part(registered, 1));
+    if (cage) {
+      made.cage = std::move(*cage);
       return made;
     }
-    why = not_valid(*report);
+    why = cage.error();
+    if (why.code != ErrorCode::no_valid_cage) {
+      break;
+    }
+    made.registration = keep_apart(contents); // the simpler the solids, the surer their union
   }
-  return *why;
+  return why;
 }
 
 } // namespace cagewright

@@ -505,6 +505,9 @@ ExactMesh union_of_all(std::span<Leaf> leaves, const Planes& planes, Counter& co
   tbb::parallel_invoke(
       [&] { first = union_of_all(leaves.first(leaves.size() / 2), planes, counter); },
       [&] { second = union_of_all(leaves.subspan(leaves.size() / 2), planes, counter); });
+  if (first.triangles.empty() || second.triangles.empty()) {
+    return {}; // a union elsewhere failed or was cancelled, and tasks not yet begun were dropped
+  }
   ExactMesh both = union_of(first, second, planes);
   counter.step();
   return both;
