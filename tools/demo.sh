@@ -9,9 +9,13 @@ tools=$(dirname "${BASH_SOURCE[0]}")
 mkdir -p "$out"
 
 model=$tools/../samples/creature.obj
+side=-35:12
 if [ -n "$models" ]; then
   model=$models/armadillo.off
+  side=200:12 # it turns its back to the default side
 fi
+draw="--view $side --least-bend-degrees 1 --vertex-radius 0"
+bent=$out/model-bent.${model##*.}
 step() { printf '\n\033[1m%s\033[0m\n' "$*"; }
 
 step "The model: $(basename "$model")"
@@ -26,10 +30,11 @@ step "Is it valid? An independent check on the file"
 
 step "Bending the cage bends the model"
 python3 "$tools/pose.py" "$out/cage.obj" "$out/cage-bent.obj" --bend 50
-"$program" deform "$model" "$out/cage.obj" "$out/cage-bent.obj" -o "$out/model-bent.obj"
+"$program" deform "$model" "$out/cage.obj" "$out/cage-bent.obj" -o "$bent"
 
 step "Pictures"
-"$program" render "$model" "$out/cage.obj" -o "$out/cage.png"
-"$program" render "$out/boxes.obj" --color-by-group -o "$out/boxes.png"
-"$program" render "$out/model-bent.obj" "$out/cage-bent.obj" -o "$out/bent.png"
+"$program" render "$model" $draw -o "$out/model.png"
+"$program" render "$out/boxes.obj" $draw --color-by-group -o "$out/boxes.png"
+"$program" render "$model" "$out/cage.obj" $draw -o "$out/cage.png"
+"$program" render "$bent" "$out/cage-bent.obj" $draw -o "$out/bent.png"
 ls "$out"/*.png
