@@ -37,7 +37,7 @@ double shape_defect(const Corners& t) {
   const double area = triangle_area(t);
   constexpr double most = 100;
   const double scaled = 4 * std::numbers::sqrt3 * area;
-  return scaled * (most + 1) > sides ? sides / scaled - 1 : most;
+  return scaled * (most + good_shape) > sides ? std::max(0.0, sides / scaled - good_shape) : most;
 }
 
 double bend(const Corners& s, const Corners& t) {

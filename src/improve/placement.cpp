@@ -150,11 +150,11 @@ private:
     const double area = n.norm() / 2;
     const double x = shape_defect(t);
     const double scaled = 4 * std::numbers::sqrt3 * area;
-    if (!(scaled > 0)) {
+    if (!(scaled > 0) || x == 0) {
       return;
     }
     const Vec3 area_slope = (n / (2 * area)).cross(t[2] - t[1]) / 2;
-    const Vec3 slope = 2 * (2 * t[0] - t[1] - t[2]) / scaled - (x + 1) / area * area_slope;
+    const Vec3 slope = 2 * (2 * t[0] - t[1] - t[2]) / scaled - (x + good_shape) / area * area_slope;
     const double weight = objective_.shape_weight();
     q.gradient += 2 * weight * x * slope;
     q.hessian += 2 * weight * (x * 4 / scaled * Mat3::Identity() + slope * slope.transpose());

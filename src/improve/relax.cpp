@@ -185,10 +185,10 @@ private:
       const Vec3& c = t[(k + 2) % 3];
       const Vec3 area_slope = n.cross(c - b) / 2;
       gradient[k] += (b - center_).cross(c - center_) / 6 + mean * area_slope;
-      slope[k] = 2 * (2 * a - b - c) / scaled - (x + 1) / area * area_slope;
+      slope[k] = 2 * (2 * a - b - c) / scaled - (x + good_shape) / area * area_slope;
       gradient[k] += 2 * weight * x * slope[k];
     }
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3 && x > 0; ++k) {
       for (int m = 0; m < 3; ++m) {
         const double springs = (k == m ? 2.0 : -1.0) * 2 * x / scaled;
         hessian[k][m] +=
