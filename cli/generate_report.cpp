@@ -9,12 +9,15 @@
 namespace cagewright::cli {
 namespace {
 
-nlohmann::json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+nlohmann::json to_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 nlohmann::json to_json(const OrientedBox& box) {
   return {{"center", to_json(box.center)},
-          {"axes", {to_json(Vec3(box.axes.col(0))), to_json(Vec3(box.axes.col(1))),
-                    to_json(Vec3(box.axes.col(2)))}},
+          {"axes",
+           {to_json(Vec3(box.axes.col(0))), to_json(Vec3(box.axes.col(1))),
+            to_json(Vec3(box.axes.col(2)))}},
           {"half_lengths", to_json(box.half)},
           {"volume", box.volume()}};
 }
@@ -167,7 +170,6 @@ std::string summary(const GeneratedCage& made, const CageMetrics& metrics) {
                      made.registration.joints.size()) +
          figures_as_text(metrics) + times_line(made.times);
 }
-
 
 std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
   const std::string start =

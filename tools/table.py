@@ -64,6 +64,7 @@ def main():
     parser.add_argument("--depths", nargs="+", type=int, default=[0, 1, 2, 3, 4, 5, 6])
     parser.add_argument("--rules", nargs="+", default=["volume", "published"])
     parser.add_argument("--all", action="store_true", help="also the package's small test files")
+    parser.add_argument("--note", default="", help="a sentence about the machine, for the table")
     parser.add_argument("--output", default="docs/table.md")
     arguments = parser.parse_args()
 
@@ -84,7 +85,8 @@ def main():
              "Made by `./dev table`. Every cage below was certified by `cagewright check`. Gaps (mean",
              "and greatest distance from the cage to the model, and the clearance between them) are in",
              "percent of the diagonal of the model's bounding box; times are in seconds on two cores,",
-             "up to the union and for the union itself. For open models the volume is an estimate.", "",
+             "up to the union and for the union itself. For open models the volume is an estimate.",
+             arguments.note, "",
              "| model | slicing | depth | boxes | vertices | volume ratio | mean gap % | max gap % | clearance % | boxes s | union s |",
              "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"]
     lines += ["| " + " | ".join(str(c) for c in cells) + " |" for cells in rows]

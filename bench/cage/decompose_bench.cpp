@@ -23,7 +23,12 @@ void decompose_torus(benchmark::State& state) {
   state.counters["voxels_s"] = voxels;
   state.counters["slicing_s"] = slicing;
 }
-BENCHMARK(decompose_torus)->ArgName("around")->Arg(100)->Arg(316)->Arg(1000)
-    ->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(decompose_torus)
+    ->ArgName("around")
+    ->Arg(100)
+    ->Arg(316)
+    ->Arg(1000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 } // namespace

@@ -30,8 +30,13 @@ void cross_sections_of_the_root(benchmark::State& state) {
     }
   }
 }
-BENCHMARK(cross_sections_of_the_root)->ArgName("resolution")->Arg(32)->Arg(64)->Arg(128)
-    ->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(cross_sections_of_the_root)
+    ->ArgName("resolution")
+    ->Arg(32)
+    ->Arg(64)
+    ->Arg(128)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 void build_tree(benchmark::State& state, SlicingRule rule) {
   const VoxelGrid grid = ring(static_cast<int>(state.range(0)));
@@ -43,9 +48,19 @@ void build_tree(benchmark::State& state, SlicingRule rule) {
   }
   state.counters["boxes"] = static_cast<double>(boxes);
 }
-BENCHMARK_CAPTURE(build_tree, volume, SlicingRule::volume)->ArgNames({"resolution", "depth"})
-    ->Args({64, 3})->Args({64, 5})->Args({128, 5})->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(build_tree, published, SlicingRule::published)->ArgNames({"resolution", "depth"})
-    ->Args({64, 3})->Args({64, 5})->Args({128, 5})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(build_tree, volume, SlicingRule::volume)
+    ->ArgNames({"resolution", "depth"})
+    ->Args({64, 3})
+    ->Args({64, 5})
+    ->Args({128, 5})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(build_tree, published, SlicingRule::published)
+    ->ArgNames({"resolution", "depth"})
+    ->Args({64, 3})
+    ->Args({64, 5})
+    ->Args({128, 5})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 } // namespace

@@ -75,13 +75,14 @@ Status write_outputs(const Arguments& arguments, const PolygonMesh& mesh,
 }
 
 int emit_stage(const Arguments& arguments, const Session& session, const TriangleMesh& model) {
-  const Result<BoxDecomposition> boxes = decompose(model, arguments.options.boxes, session.progress());
+  const Result<BoxDecomposition> boxes =
+      decompose(model, arguments.options.boxes, session.progress());
   if (!boxes) {
     return fail(in_file(arguments.model, boxes.error()));
   }
   const std::vector<int> cover = boxes->tree.cover();
-  const PolygonMesh mesh = arguments.emit == Emit::boxes ? box_objects(*boxes, cover)
-                                                         : voxel_objects(*boxes);
+  const PolygonMesh mesh =
+      arguments.emit == Emit::boxes ? box_objects(*boxes, cover) : voxel_objects(*boxes);
   if (const Status written = write_outputs(arguments, mesh, to_json(*boxes, cover)); !written) {
     return fail(written.error());
   }
@@ -148,66 +149,87 @@ int run(const Arguments& arguments, const Session& session) {
 void add_slicing_options(CLI::App& command, SlicingOptions& slicing) {
   const char* group = "Slicing";
   command.add_option("--depth", slicing.depth, "How often a part of the model may be cut in two")
-      ->check(CLI::Range(0, 20))->group(group);
-  command.add_option("--boxes", slicing.max_boxes,
-                     "Use at most so many boxes, cutting where it pays most; 0: as many as --depth gives")
-      ->check(CLI::Range(0, 100000))->group(group);
+      ->check(CLI::Range(0, 20))
+      ->group(group);
+  command
+      .add_option(
+          "--boxes", slicing.max_boxes,
+          "Use at most so many boxes, cutting where it pays most; 0: as many as --depth gives")
+      ->check(CLI::Range(0, 100000))
+      ->group(group);
   command
       .add_option("--slicing", slicing.rule,
                   "volume: cut where the boxes of the parts get smallest; "
                   "published: at the greatest jump of the cross-section")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, SlicingRule>{{"volume", SlicingRule::volume},
-                                             {"published", SlicingRule::published}}))
-      ->default_str("volume")->group(group);
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SlicingRule>{
+          {"volume", SlicingRule::volume}, {"published", SlicingRule::published}}))
+      ->default_str("volume")
+      ->group(group);
   command
       .add_option_function<std::string>(
-          "--split",
-          [&slicing](const std::string& how) { slicing.split_parts = how == "parts"; },
+          "--split", [&slicing](const std::string& how) { slicing.split_parts = how == "parts"; },
           "parts: each connected part of a half gets a box; binary: each half gets one")
-      ->check(CLI::IsMember({"parts", "binary"}))->default_str("parts")->group(group);
+      ->check(CLI::IsMember({"parts", "binary"}))
+      ->default_str("parts")
+      ->group(group);
   command
-      .add_option("--no-jump", slicing.no_jump,
-                  "With --slicing published, when no axis has a clear jump: middle cuts the longest "
-                  "edge in the middle, skip leaves the box whole")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, NoJump>{
-          {"middle", NoJump::middle}, {"skip", NoJump::skip}}))
-      ->default_str("middle")->group(group);
-  command.add_option("--min-jump", slicing.min_jump,
-                     "With --slicing published: least clear jump, as a fraction of the greatest "
-                     "cross-section")
-      ->check(CLI::Range(0.0, 1.0))->group(group);
-  command.add_option("--min-gain", slicing.min_gain,
-                     "With --slicing volume: least fraction of a box's volume that a cut must save")
-      ->check(CLI::Range(0.0, 1.0))->group(group);
-  command.add_option("--eta", slicing.eta,
-                     "Leave a box whole when (least / greatest cross-section) is above this, and "
-                     "--zeta holds too; a value above 1 switches the test off")
-      ->check(CLI::PositiveNumber)->group(group);
-  command.add_option("--zeta", slicing.zeta,
-                     "Leave a box whole when (shortest / longest edge) is above this, and --eta "
-                     "holds too; a value above 1 switches the test off")
-      ->check(CLI::PositiveNumber)->group(group);
+      .add_option(
+          "--no-jump", slicing.no_jump,
+          "With --slicing published, when no axis has a clear jump: middle cuts the longest "
+          "edge in the middle, skip leaves the box whole")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, NoJump>{{"middle", NoJump::middle}, {"skip", NoJump::skip}}))
+      ->default_str("middle")
+      ->group(group);
+  command
+      .add_option("--min-jump", slicing.min_jump,
+                  "With --slicing published: least clear jump, as a fraction of the greatest "
+                  "cross-section")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(group);
+  command
+      .add_option("--min-gain", slicing.min_gain,
+                  "With --slicing volume: least fraction of a box's volume that a cut must save")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(group);
+  command
+      .add_option("--eta", slicing.eta,
+                  "Leave a box whole when (least / greatest cross-section) is above this, and "
+                  "--zeta holds too; a value above 1 switches the test off")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command
+      .add_option("--zeta", slicing.zeta,
+                  "Leave a box whole when (shortest / longest edge) is above this, and --eta "
+                  "holds too; a value above 1 switches the test off")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
 }
 
 void add_pipeline_options(CLI::App& command, GenerateOptions& options) {
   const char* group = "Pipeline";
-  command.add_option("--resolution", options.boxes.resolution,
-                     "Voxels along the longest axis of the model's box")
-      ->check(CLI::Range(8, 512))->group(group);
+  command
+      .add_option("--resolution", options.boxes.resolution,
+                  "Voxels along the longest axis of the model's box")
+      ->check(CLI::Range(8, 512))
+      ->group(group);
   command
       .add_option_function<std::string>(
           "--registration",
           [&options](const std::string& how) { options.registration = how == "on"; },
           "Join the faces of neighbouring boxes where they fit")
-      ->check(CLI::IsMember({"on", "off"}))->default_str("on")->group(group);
+      ->check(CLI::IsMember({"on", "off"}))
+      ->default_str("on")
+      ->group(group);
   command
-      .add_option("--pieces", options.boxes.pieces,
-                  "A model in several pieces gets one cage with thin bridges (together), or one for "
-                  "each group of pieces that are apart (apart)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Pieces>{
-          {"together", Pieces::together}, {"apart", Pieces::apart}}))
-      ->default_str("together")->group(group);
+      .add_option(
+          "--pieces", options.boxes.pieces,
+          "A model in several pieces gets one cage with thin bridges (together), or one for "
+          "each group of pieces that are apart (apart)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Pieces>{{"together", Pieces::together}, {"apart", Pieces::apart}}))
+      ->default_str("together")
+      ->group(group);
 }
 
 void add_budget_options(CLI::App& command, Arguments& arguments) {
@@ -218,31 +240,43 @@ void add_budget_options(CLI::App& command, Arguments& arguments) {
       .add_option("--vertices", arguments.vertices,
                   "Make the best cage of at most so many vertices (100, if another option of this "
                   "group is given, and not --faces)")
-      ->check(CLI::Range(4, 100000))->default_str("")->each(asked)->group(group);
-  command.add_option("--faces", budget.improve.faces,
-                     "The same for triangles; both may be given")
-      ->check(CLI::Range(4, 200000))->default_str("")->each(asked)->group(group);
+      ->check(CLI::Range(4, 100000))
+      ->default_str("")
+      ->each(asked)
+      ->group(group);
+  command.add_option("--faces", budget.improve.faces, "The same for triangles; both may be given")
+      ->check(CLI::Range(4, 200000))
+      ->default_str("")
+      ->each(asked)
+      ->group(group);
   command
       .add_option("--method", budget.start,
                   "What a cage within a budget is made from: envelope, a surface of voxels of any "
                   "topology; or obb, the union of the boxes")
       ->transform(CLI::CheckedTransformer(std::map<std::string, CageStart>{
           {"envelope", CageStart::envelope}, {"obb", CageStart::obb}}))
-      ->default_str("envelope")->each(asked)->group(group);
+      ->default_str("envelope")
+      ->each(asked)
+      ->group(group);
   command
       .add_option("--clearance", budget.improve.clearance,
                   "Least distance between cage and model, as a fraction of the model's diagonal")
-      ->check(CLI::Range(1e-6, 0.5))->each(asked)->group(group);
+      ->check(CLI::Range(1e-6, 0.5))
+      ->each(asked)
+      ->group(group);
   command
-      .add_option("--closing", budget.closing,
-                  "With --method envelope: fill holes and gaps narrower than twice this fraction of "
-                  "the model's diagonal")
-      ->check(CLI::Range(0.0, 0.5))->group(group);
+      .add_option(
+          "--closing", budget.closing,
+          "With --method envelope: fill holes and gaps narrower than twice this fraction of "
+          "the model's diagonal")
+      ->check(CLI::Range(0.0, 0.5))
+      ->group(group);
   command
       .add_option("--envelope-resolution", budget.resolution,
                   "With --method envelope: voxels along the model's diagonal; 0: chosen by the "
                   "budget and the model")
-      ->check(CLI::Range(0, 512))->group(group);
+      ->check(CLI::Range(0, 512))
+      ->group(group);
 }
 
 } // namespace
@@ -250,8 +284,10 @@ void add_budget_options(CLI::App& command, Arguments& arguments) {
 void add_generate(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("generate", "Make a valid cage for a model");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MODEL", arguments->model, "OBJ, PLY, STL, OFF, GLB or glTF file")->required();
-  command->add_option("-o,--output", arguments->output, "OBJ, PLY, STL or OFF file to write")->required();
+  command->add_option("MODEL", arguments->model, "OBJ, PLY, STL, OFF, GLB or glTF file")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "OBJ, PLY, STL or OFF file to write")
+      ->required();
   command->add_option("--json", arguments->json,
                       "File for all figures: every box, axis, cross-section and cut");
   command
@@ -263,8 +299,9 @@ void add_generate(CLI::App& app, Session& session) {
   add_slicing_options(*command, arguments->options.boxes.slicing);
   add_pipeline_options(*command, arguments->options);
   add_budget_options(*command, *arguments);
-  command->callback(
-      [arguments, &session] { session.run = [arguments, &session] { return run(*arguments, session); }; });
+  command->callback([arguments, &session] {
+    session.run = [arguments, &session] { return run(*arguments, session); };
+  });
 }
 
 } // namespace cagewright::cli

@@ -49,8 +49,7 @@ Result<TriangleMesh> start_from_boxes(TriangleView model, const BudgetCageOption
   // Boxes may come nearer than the clearance. No step of the improvement comes nearer still.
   const double least = mesh_distance(TriangleBvh(start), TriangleBvh(model)).distance;
   constexpr double below = 0.99;
-  made.clearance =
-      std::min(options.improve.clearance, below * least / diagonal(model.positions));
+  made.clearance = std::min(options.improve.clearance, below * least / diagonal(model.positions));
   return start;
 }
 
@@ -75,8 +74,7 @@ Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions&
 
   ImproveOptions improvement = options.improve;
   improvement.clearance = made.clearance;
-  Result<Improved> result =
-      improve(*start, model, improvement, progress.part(started, improved));
+  Result<Improved> result = improve(*start, model, improvement, progress.part(started, improved));
   if (!result) {
     return result.error();
   }

@@ -50,7 +50,8 @@ Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& o
   }
   watch.lap("voxels");
 
-  Result<BoxTree> tree = build_box_tree(in_grid_coordinates(made.grid), options.slicing, progress.part(0.8, 1));
+  Result<BoxTree> tree =
+      build_box_tree(in_grid_coordinates(made.grid), options.slicing, progress.part(0.8, 1));
   if (!tree) {
     return tree.error();
   }

@@ -11,8 +11,8 @@ namespace cagewright {
 namespace {
 
 /// Boxes grow by distinct amounts up to these parts of a voxel before they are united, so that no
-/// two of their faces coincide. The second and third, without joints between boxes, are for the case
-/// that the union does not survive the rounding to the model's coordinates.
+/// two of their faces coincide. The second and third, without joints between boxes, are for the
+/// case that the union does not survive the rounding to the model's coordinates.
 constexpr std::array<double, 3> separations = {0.2, 0.17, 0.13};
 
 // Shares of the whole time, for the progress bar.
@@ -47,8 +47,8 @@ Error not_valid(const ValidityReport& report) {
 
 /// The union of the solids in the model's coordinates, if it is a valid cage there.
 Result<TriangleMesh> cage_of(const std::vector<Hexahedron>& solids, double separation,
-                             const BoxDecomposition& boxes, TriangleView model,
-                             bool allow_pieces, Stopwatch& watch, const Progress& progress) {
+                             const BoxDecomposition& boxes, TriangleView model, bool allow_pieces,
+                             Stopwatch& watch, const Progress& progress) {
   Result<TriangleMesh> united_solids =
       unite(solids, {.separation = separation}, progress.part(0, 0.9));
   watch.lap("union");

@@ -21,8 +21,8 @@ struct GenerateOptions {
 struct GeneratedCage {
   TriangleMesh cage; ///< valid in the sense of validate_cage(), on exactly these coordinates
   BoxDecomposition boxes;
-  std::vector<int> leaves; ///< nodes of the tree whose boxes the cage was made of
-  Registration registration; ///< the solids that were united, in grid coordinates
+  std::vector<int> leaves;      ///< nodes of the tree whose boxes the cage was made of
+  Registration registration;    ///< the solids that were united, in grid coordinates
   std::vector<StageTime> times; ///< of all stages, those of `boxes` included
 };
 

@@ -14,7 +14,9 @@ constexpr double unit_round_off = 0x1.0p-52;
 /// Points this near to a line (as a fraction of the diagonal) lie on it.
 constexpr double line_width = 1e-12;
 
-Error unfit(std::string message) { return {ErrorCode::unfit_model, std::move(message)}; }
+Error unfit(std::string message) {
+  return {ErrorCode::unfit_model, std::move(message)};
+}
 
 bool on_one_line(std::span<const Vec3> positions, double diagonal) {
   const Vec3& origin = positions[0];

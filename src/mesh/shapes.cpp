@@ -10,7 +10,8 @@ namespace cagewright {
 TriangleMesh make_cube() {
   TriangleMesh cube;
   for (unsigned i = 0; i < 8; ++i) {
-    cube.positions.emplace_back((i & 1U) ? 1.0 : -1.0, (i & 2U) ? 1.0 : -1.0, (i & 4U) ? 1.0 : -1.0);
+    cube.positions.emplace_back((i & 1U) ? 1.0 : -1.0, (i & 2U) ? 1.0 : -1.0,
+                                (i & 4U) ? 1.0 : -1.0);
   }
   // clang-format off
   cube.triangles = {{0, 4, 6}, {0, 6, 2},   // x = -1
@@ -30,20 +31,30 @@ TriangleMesh make_tetrahedron() {
 
 TriangleMesh make_icosphere(int subdivisions) {
   const double g = std::numbers::phi;
-  TriangleMesh sphere{{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                       {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}},
-                      {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11},
-                       {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                       {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9},
-                       {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}}};
+  TriangleMesh sphere{{{-1, g, 0},
+                       {1, g, 0},
+                       {-1, -g, 0},
+                       {1, -g, 0},
+                       {0, -1, g},
+                       {0, 1, g},
+                       {0, -1, -g},
+                       {0, 1, -g},
+                       {g, 0, -1},
+                       {g, 0, 1},
+                       {-g, 0, -1},
+                       {-g, 0, 1}},
+                      {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                       {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                       {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                       {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}}};
   for (Vec3& p : sphere.positions) {
     p.normalize();
   }
   for (int level = 0; level < subdivisions; ++level) {
     std::map<std::pair<Index, Index>, Index> middles;
     const auto middle = [&](Index a, Index b) {
-      const auto [at, fresh] = middles.try_emplace(std::minmax(a, b),
-                                                   static_cast<Index>(sphere.positions.size()));
+      const auto [at, fresh] =
+          middles.try_emplace(std::minmax(a, b), static_cast<Index>(sphere.positions.size()));
       if (fresh) {
         sphere.positions.push_back((sphere.positions[a] + sphere.positions[b]).normalized());
       }

@@ -36,9 +36,9 @@ struct Candidate {
 class TreeBuilder {
 public:
   TreeBuilder(const VoxelGrid& grid, const SlicingOptions& options)
-      : grid_(grid), options_(options),
-        owners_{std::vector<std::uint32_t>(grid.kinds.size(), VoxelOwners::none),
-                std::vector<std::uint32_t>(grid.kinds.size(), 0)} {}
+      : grid_(grid),
+        options_(options), owners_{std::vector<std::uint32_t>(grid.kinds.size(), VoxelOwners::none),
+                                   std::vector<std::uint32_t>(grid.kinds.size(), 0)} {}
 
   Result<BoxTree> build(const Progress& progress) {
     if (!add_root()) {
@@ -136,16 +136,14 @@ private:
       stop = StopReason::prismatic;
       return std::nullopt;
     }
-    return options_.rule == SlicingRule::volume ? best_by_volume(at, stop)
-                                                : best_by_jump(at, stop);
+    return options_.rule == SlicingRule::volume ? best_by_volume(at, stop) : best_by_jump(at, stop);
   }
 
   std::optional<Candidate> best_by_volume(std::size_t at, StopReason& stop) const {
     const BoxNode& node = tree_.nodes[at];
-    const std::vector<CutPlane> planes =
-        volume_cuts(grid_, owners_, static_cast<std::uint32_t>(at), node.voxels, node.box,
-                    {.split_parts = options_.split_parts, .margin = margin_of(node),
-                     .padding = padding()});
+    const std::vector<CutPlane> planes = volume_cuts(
+        grid_, owners_, static_cast<std::uint32_t>(at), node.voxels, node.box,
+        {.split_parts = options_.split_parts, .margin = margin_of(node), .padding = padding()});
     const std::vector<double> at_once(planes.size(), 1.0);
     std::optional<Prospect> best = most_promising(at, planes, at_once);
     if (node.depth + 1 < options_.depth && (!best || best->gain < clear_gain)) {
@@ -166,9 +164,9 @@ private:
 
   /// Of the planes that cut something off, the one that leaves the least volume.
   /// \param share_left for each plane, what later cuts leave of the volume of its parts' boxes
-  [[nodiscard]] std::optional<Prospect> most_promising(std::size_t at,
-                                                       const std::vector<CutPlane>& planes,
-                                                       const std::vector<double>& share_left) const {
+  [[nodiscard]] std::optional<Prospect>
+  most_promising(std::size_t at, const std::vector<CutPlane>& planes,
+                 const std::vector<double>& share_left) const {
     std::vector<std::optional<Candidate>> tried(planes.size());
     parallel_for(0, planes.size(), 1, [&](std::size_t p) { tried[p] = carve(at, planes[p]); });
     std::optional<Prospect> best;
@@ -200,10 +198,9 @@ private:
 
   std::optional<Candidate> best_by_jump(std::size_t at, StopReason& stop) const {
     const BoxNode& node = tree_.nodes[at];
-    const std::vector<PublishedCut> cuts =
-        published_cuts(node.box, node.sections,
-                       {.min_jump = options_.min_jump, .margin = margin_of(node),
-                        .no_jump = options_.no_jump});
+    const std::vector<PublishedCut> cuts = published_cuts(
+        node.box, node.sections,
+        {.min_jump = options_.min_jump, .margin = margin_of(node), .no_jump = options_.no_jump});
     for (const PublishedCut& cut : cuts) {
       if (std::optional<Candidate> candidate = carve(at, cut.plane)) {
         candidate->cut.jump = cut.jump;
@@ -254,9 +251,8 @@ private:
       }
       return fresh;
     }
-    std::stable_sort(due.begin(), due.end(), [&](std::size_t a, std::size_t b) {
-      return saving(a) > saving(b);
-    });
+    std::stable_sort(due.begin(), due.end(),
+                     [&](std::size_t a, std::size_t b) { return saving(a) > saving(b); });
     for (const std::size_t at : due) {
       const auto boxes = static_cast<int>(tree_.cover().size() + candidates_[at]->parts.size()) - 1;
       if (boxes <= options_.max_boxes) {

@@ -26,8 +26,8 @@ enum class SlicingRule {
 
 struct SlicingOptions {
   SlicingRule rule = SlicingRule::volume;
-  int depth = 5;           ///< how often a part may be cut: depth 0 is one box; 0 to 20
-  int max_boxes = 0;       ///< stop at this many boxes, cutting first where it pays most; 0: no limit
+  int depth = 5;     ///< how often a part may be cut: depth 0 is one box; 0 to 20
+  int max_boxes = 0; ///< stop at this many boxes, cutting first where it pays most; 0: no limit
   bool split_parts = true; ///< the connected parts of a half get a box each; false: strictly binary
   double eta = 1.1;        ///< T1: stop when min f / max f is above, and T2 too; above 1: never
   double zeta = 1.1;       ///< T2: stop when shortest / longest edge is above, and T1 too
@@ -65,8 +65,8 @@ struct Cut {
 struct BoxNode {
   int parent = -1; ///< index of the node; -1 for the root
   int depth = 0;
-  OrientedBox box;                   ///< contains all corners of the voxels; axes longest first
-  std::vector<std::uint32_t> voxels; ///< indices into the grid, ascending
+  OrientedBox box;                      ///< contains all corners of the voxels; axes longest first
+  std::vector<std::uint32_t> voxels;    ///< indices into the grid, ascending
   std::array<CrossSection, 3> sections; ///< f along the axes of the box
   double prismatic_ratio = 1;           ///< T1
   double cube_ratio = 1;                ///< T2

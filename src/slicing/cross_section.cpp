@@ -89,9 +89,9 @@ std::vector<double> median_filtered(const std::vector<double>& f, int radius) {
 /// Slices of a box along one axis, and the raster of the other two.
 struct Lattice {
   std::size_t slices, width, height;
-  Vec3 first;            // grid coordinates of the first sample
-  Vec3 along, over, up;  // steps in grid coordinates
-  double step;           // between slices, in model units
+  Vec3 first;           // grid coordinates of the first sample
+  Vec3 along, over, up; // steps in grid coordinates
+  double step;          // between slices, in model units
 };
 
 std::size_t samples(double length, double size) {
@@ -129,8 +129,8 @@ CrossSection cross_section(const VoxelGrid& grid, const VoxelOwners& owners, std
     const int i = static_cast<int>(std::floor(p.x()));
     const int j = static_cast<int>(std::floor(p.y()));
     const int k = static_cast<int>(std::floor(p.z()));
-    return i >= 0 && j >= 0 && k >= 0 && i < grid.dims[0] && j < grid.dims[1] &&
-           k < grid.dims[2] && owners.part[grid.index(i, j, k)] == part;
+    return i >= 0 && j >= 0 && k >= 0 && i < grid.dims[0] && j < grid.dims[1] && k < grid.dims[2] &&
+           owners.part[grid.index(i, j, k)] == part;
   };
 
   CrossSection section;

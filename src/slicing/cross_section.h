@@ -23,10 +23,10 @@ struct CrossSectionOptions {
 /// f(x) = the least area among the connected parts of the slice at x (Xian, Lin and Gao, "Automatic
 /// cage generation by improved OBBs for mesh deformation", 2012), in units of length squared.
 struct CrossSection {
-  int axis = 0;             ///< axis of the box that the slices are perpendicular to
-  double first = 0;         ///< position of the first slice: local coordinate along the axis
-  double step = 0;          ///< distance between slices
-  std::vector<double> area; ///< f as sampled, one value for each slice
+  int axis = 0;               ///< axis of the box that the slices are perpendicular to
+  double first = 0;           ///< position of the first slice: local coordinate along the axis
+  double step = 0;            ///< distance between slices
+  std::vector<double> area;   ///< f as sampled, one value for each slice
   std::vector<double> smooth; ///< f after the median filter: what the slicing rule reads
 
   /// The local coordinate of the plane half-way between slice k and slice k + 1.

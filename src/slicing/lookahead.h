@@ -16,8 +16,8 @@ namespace cagewright {
 /// A coarse copy of a part of a grid, on which cuts are tried out.
 ///
 /// The cut that saves most at once is not always the best: a ring must first be cut in two, which
-/// saves nothing, before cuts across its halves open the hole. So a cut is judged by the volume that
-/// is left after each of its parts has been cut once more.
+/// saves nothing, before cuts across its halves open the hole. So a cut is judged by the volume
+/// that is left after each of its parts has been cut once more.
 class Lookahead {
 public:
   /// \param voxels  of the part, in a grid whose outermost layer is empty

@@ -71,8 +71,7 @@ private:
     std::size_t voxels = 0;
   };
 
-  template <class Visit>
-  void visit_neighbors(std::uint32_t slot, const Visit& visit) const {
+  template <class Visit> void visit_neighbors(std::uint32_t slot, const Visit& visit) const {
     for (const std::ptrdiff_t step : steps_) {
       const std::size_t n = voxels_[slot] + static_cast<std::size_t>(step);
       if (owners_.part[n] == part_) {

@@ -21,7 +21,8 @@ struct CutPlane {
 /// Cuts a part in two by the centers of its voxels, then each half into its connected parts.
 ///
 /// A crumb (a part no thicker than two voxels along the axis, or a small one whose own box saves
-/// nothing) goes back to the part across the plane that it touches most, so that no sliver boxes result.
+/// nothing) goes back to the part across the plane that it touches most, so that no sliver boxes
+/// result.
 ///
 /// \param split_parts  false keeps each half whole, connected or not: strictly two parts
 /// \returns the lists of voxels, ascending, ordered by their first voxel; one list when the plane

@@ -27,8 +27,9 @@ double prismatic_ratio(const CrossSection& section, std::size_t margin) {
   if (f.size() <= 2 * margin) {
     return 1;
   }
-  const auto [least, greatest] = std::minmax_element(f.begin() + static_cast<std::ptrdiff_t>(margin),
-                                                     f.end() - static_cast<std::ptrdiff_t>(margin));
+  const auto [least, greatest] =
+      std::minmax_element(f.begin() + static_cast<std::ptrdiff_t>(margin),
+                          f.end() - static_cast<std::ptrdiff_t>(margin));
   return *greatest > 0 ? *least / *greatest : 1;
 }
 

@@ -22,7 +22,8 @@ public:
       }
     }
     width_ = high_[1] - low_[1] + 1;
-    ends_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(high_[2] - low_[2] + 1));
+    ends_.resize(static_cast<std::size_t>(width_) *
+                 static_cast<std::size_t>(high_[2] - low_[2] + 1));
     for (const std::uint32_t v : voxels) {
       const std::array<int, 3> c = grid.cell(v);
       for (const int j : {c[1], c[1] + 1}) {

@@ -31,8 +31,9 @@ struct Sweep {
         const VolumeRuleOptions& options)
       : grid(of_grid), owners(of_owners), part(of_part), voxels(of_voxels),
         steps(neighbor_steps(of_grid)), split_parts(options.split_parts) {
-    extent_of_one = ((box.axes.transpose() * grid.axes).cwiseAbs() * Vec3::Constant(grid.size))
-                        .array() + 2 * options.padding;
+    extent_of_one =
+        ((box.axes.transpose() * grid.axes).cwiseAbs() * Vec3::Constant(grid.size)).array() +
+        2 * options.padding;
     centers.reserve(voxels.size());
     for (const std::uint32_t v : voxels) {
       centers.push_back(box.to_local(grid.center(v)));
@@ -43,10 +44,10 @@ struct Sweep {
 /// The slices of the voxels along one axis. Slice boundaries lie half-way between voxel centers
 /// when the box is parallel to the grid.
 struct Slices {
-  double begin = 0; // local coordinate where slice 0 begins
-  std::vector<std::uint32_t> of; // slice of each voxel
+  double begin = 0;                 // local coordinate where slice 0 begins
+  std::vector<std::uint32_t> of;    // slice of each voxel
   std::vector<std::uint32_t> order; // voxels by slice
-  std::vector<std::size_t> first; // where each slice begins in `order`, and the end
+  std::vector<std::size_t> first;   // where each slice begins in `order`, and the end
 
   Slices(const Sweep& sweep, int axis) : of(sweep.voxels.size()), order(sweep.voxels.size()) {
     double low = sweep.centers[0][axis];
@@ -186,9 +187,8 @@ void append_best(const Sweep& sweep, int axis, const VolumeRuleOptions& options,
     double best_cost = 0;
     for (std::ptrdiff_t k = begin; k < end; ++k) {
       const double cost = costs[static_cast<std::size_t>(k)];
-      const bool free = std::none_of(chosen.begin(), chosen.end(), [&](std::ptrdiff_t c) {
-        return std::abs(c - k) < apart;
-      });
+      const bool free = std::none_of(chosen.begin(), chosen.end(),
+                                     [&](std::ptrdiff_t c) { return std::abs(c - k) < apart; });
       if (free && (best < 0 || cost < (1 - tie) * best_cost)) {
         best = k;
         best_cost = cost;
@@ -235,7 +235,8 @@ CutVolumes least_volumes(const VoxelGrid& grid, const VoxelOwners& owners, std::
     const auto [begin, end] = allowed_cuts(slices, options.margin);
     if (begin < end) {
       const std::vector<double> costs = cut_costs(sweep, slices);
-      least.cut = std::min(least.cut, *std::min_element(costs.begin() + begin, costs.begin() + end));
+      least.cut =
+          std::min(least.cut, *std::min_element(costs.begin() + begin, costs.begin() + end));
     }
   }
   return least;

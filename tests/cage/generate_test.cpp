@@ -58,8 +58,8 @@ TriangleMesh soup(std::size_t count) {
   for (std::size_t t = 0; t < count; ++t) {
     const Vec3 center(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     for (int i = 0; i < 3; ++i) {
-      mesh.positions.push_back(center + 0.2 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1),
-                                                   random.uniform(-1, 1)));
+      mesh.positions.push_back(
+          center + 0.2 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
     }
     const auto first = static_cast<Index>(3 * t);
     mesh.triangles.push_back({first, first + 1, first + 2});
@@ -89,7 +89,9 @@ struct Model {
   std::function<TriangleMesh()> make;
 };
 
-void PrintTo(const Model& model, std::ostream* out) { *out << model.name; }
+void PrintTo(const Model& model, std::ostream* out) {
+  *out << model.name;
+}
 
 const std::vector<Model> models = {
     {"Cube", [] { return make_cube(); }},
@@ -99,9 +101,18 @@ const std::vector<Model> models = {
     {"Inverted", [] { return inverted(make_torus(0.3, 32, 16)); }},
     {"Open", [] { return with_every_tenth_face_missing(make_icosphere(3)); }},
     {"Doubled", [] { return doubled(make_icosphere(2)); }},
-    {"Linked", [] { return joined(make_torus(0.2, 32, 16), moved(make_cube(), 0.4, {1, 0, 0})); }},
-    {"FarApart", [] { return joined(make_icosphere(2), moved(make_cube(), 0.5, {9, 3, 1})); }},
-    {"SingleTriangle", [] { return TriangleMesh{{{0, 0, 0}, {4, 1, 0}, {1, 3, 2}}, {{0, 1, 2}}}; }},
+    {"Linked",
+     [] {
+       return joined(make_torus(0.2, 32, 16), moved(make_cube(), 0.4, {1, 0, 0}));
+     }},
+    {"FarApart",
+     [] {
+       return joined(make_icosphere(2), moved(make_cube(), 0.5, {9, 3, 1}));
+     }},
+    {"SingleTriangle",
+     [] {
+       return TriangleMesh{{{0, 0, 0}, {4, 1, 0}, {1, 3, 2}}, {{0, 1, 2}}};
+     }},
     {"FlatSheet", [] { return flat_sheet(); }},
     {"Soup", [] { return soup(300); }},
     {"StrayVertex",
@@ -160,7 +171,8 @@ TEST_P(GenerateCageFor, IsTheSameUpToSimilarity) {
 }
 
 TEST(GenerateCage, IsTheSameOnAnyNumberOfThreads) {
-  const TriangleMesh model = joined(make_torus(0.25, 48, 24), moved(make_icosphere(3), 0.5, {1, 0, 0}));
+  const TriangleMesh model =
+      joined(make_torus(0.25, 48, 24), moved(make_icosphere(3), 0.5, {1, 0, 0}));
   const auto cage_with = [&](int threads) {
     tbb::task_arena arena(threads);
     return arena.execute([&] {

@@ -34,7 +34,9 @@ TEST(SignedVolume, OfAllShapesIsPositive) {
               2 * std::numbers::pi * std::numbers::pi * 0.09, 0.01);
 }
 
-TEST(SurfaceArea, OfACubeIs24) { EXPECT_DOUBLE_EQ(surface_area(make_cube()), 24); }
+TEST(SurfaceArea, OfACubeIs24) {
+  EXPECT_DOUBLE_EQ(surface_area(make_cube()), 24);
+}
 
 TEST(BoundingBox, IgnoresVerticesThatNoTriangleUses) {
   TriangleMesh cube = make_cube();

@@ -27,14 +27,24 @@ TEST(Triangulate, CutsAQuadFromItsFirstCorner) {
 
 TEST(Triangulate, CutsAConcaveQuadAtItsReflexCorner) {
   // An arrowhead: concave at corner 1, so the diagonal must start there.
-  const TriangleMesh cut = to_triangle_mesh(single_face({{0, 0, 0}, {1, 0.9, 0}, {2, 0, 0}, {1, 2, 0}}));
+  const TriangleMesh cut =
+      to_triangle_mesh(single_face({{0, 0, 0}, {1, 0.9, 0}, {2, 0, 0}, {1, 2, 0}}));
   EXPECT_DOUBLE_EQ(surface_area(cut), 1.1);
 }
 
 TEST(Triangulate, KeepsTheAreaOfAConcavePolygon) {
-  const PolygonMesh comb = single_face({{0, 0, 1}, {5, 0, 1}, {5, 3, 1}, {4, 3, 1}, {4, 1, 1},
-                                        {3, 1, 1}, {3, 3, 1}, {2, 3, 1}, {2, 1, 1}, {1, 1, 1},
-                                        {1, 3, 1}, {0, 3, 1}});
+  const PolygonMesh comb = single_face({{0, 0, 1},
+                                        {5, 0, 1},
+                                        {5, 3, 1},
+                                        {4, 3, 1},
+                                        {4, 1, 1},
+                                        {3, 1, 1},
+                                        {3, 3, 1},
+                                        {2, 3, 1},
+                                        {2, 1, 1},
+                                        {1, 1, 1},
+                                        {1, 3, 1},
+                                        {0, 3, 1}});
   const TriangleMesh cut = to_triangle_mesh(comb);
   EXPECT_EQ(cut.triangles.size(), 10U);
   EXPECT_DOUBLE_EQ(surface_area(cut), 11);
@@ -43,7 +53,8 @@ TEST(Triangulate, KeepsTheAreaOfAConcavePolygon) {
 TEST(Triangulate, GivesTwoTrianglesFewerThanCornersWhateverTheShape) {
   const PolygonMesh bow_tie = single_face({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}});
   EXPECT_EQ(triangulate(bow_tie).triangles.size(), 3U);
-  const PolygonMesh point = single_face({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}});
+  const PolygonMesh point =
+      single_face({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}});
   EXPECT_EQ(triangulate(point).triangles.size(), 4U);
 }
 

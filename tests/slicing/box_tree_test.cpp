@@ -31,7 +31,8 @@ VoxelGrid elbow() {
 }
 
 VoxelGrid ball() {
-  return grid_where({24, 24, 24}, [](const Vec3& p) { return (p - Vec3(12, 12, 12)).norm() < 11.5; });
+  return grid_where({24, 24, 24},
+                    [](const Vec3& p) { return (p - Vec3(12, 12, 12)).norm() < 11.5; });
 }
 
 BoxTree tree_of(const VoxelGrid& grid, const SlicingOptions& options) {
@@ -122,7 +123,8 @@ TEST_P(BoxTreeBy, IsTheSameOnAnyNumberOfThreads) {
 TEST_P(BoxTreeBy, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
-  const Result<BoxTree> tree = build_box_tree(table(), {.rule = GetParam()}, Progress(stop.get_token()));
+  const Result<BoxTree> tree =
+      build_box_tree(table(), {.rule = GetParam()}, Progress(stop.get_token()));
   ASSERT_FALSE(tree);
   EXPECT_EQ(tree.error().code, ErrorCode::cancelled);
 }
@@ -168,9 +170,8 @@ TEST(BoxTreeByVolume, KeepsToTheNumberOfBoxesAsked) {
   const BoxTree some = tree_of(grid, {.depth = 6, .max_boxes = 9});
   EXPECT_LE(some.cover().size(), 9U);
   EXPECT_GE(some.cover().size(), 7U);
-  EXPECT_TRUE(std::any_of(some.nodes.begin(), some.nodes.end(), [](const BoxNode& node) {
-    return node.stop == StopReason::max_boxes;
-  }));
+  EXPECT_TRUE(std::any_of(some.nodes.begin(), some.nodes.end(),
+                          [](const BoxNode& node) { return node.stop == StopReason::max_boxes; }));
 }
 
 TEST(BoxTreeByVolume, LeavesABlockWhole) {
@@ -221,7 +222,8 @@ TEST(BuildBoxTree, RefusesAnEmptyGridAndBadOptions) {
 }
 
 TEST(BuildBoxTree, GivesPiecesThatAreApartTheirOwnBoxes) {
-  const VoxelGrid two = grid_where({30, 8, 8}, [](const Vec3& p) { return p.x() < 10 || p.x() >= 20; });
+  const VoxelGrid two =
+      grid_where({30, 8, 8}, [](const Vec3& p) { return p.x() < 10 || p.x() >= 20; });
   const BoxTree tree = tree_of(two, {.depth = 1});
   EXPECT_EQ(tree.cover().size(), 2U);
 }

@@ -10,13 +10,15 @@ namespace cagewright::test {
 
 /// A grid along the world's axes with unit voxels, occupied where the predicate says so of a
 /// voxel's center; an empty layer surrounds it.
-inline VoxelGrid grid_where(std::array<int, 3> size, const std::function<bool(const Vec3&)>& inside) {
+inline VoxelGrid grid_where(std::array<int, 3> size,
+                            const std::function<bool(const Vec3&)>& inside) {
   VoxelGrid grid;
   grid.axes = Mat3::Identity();
   grid.origin = Vec3(-1, -1, -1);
   grid.size = 1;
   grid.dims = {size[0] + 2, size[1] + 2, size[2] + 2};
-  grid.kinds.assign(static_cast<std::size_t>(grid.dims[0]) * static_cast<std::size_t>(grid.dims[1]) *
+  grid.kinds.assign(static_cast<std::size_t>(grid.dims[0]) *
+                        static_cast<std::size_t>(grid.dims[1]) *
                         static_cast<std::size_t>(grid.dims[2]),
                     VoxelKind::outer);
   for (int k = 1; k <= size[2]; ++k) {

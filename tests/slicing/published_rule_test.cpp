@@ -20,7 +20,8 @@ const std::vector<double> flat(8, 5.0);
 const std::vector<double> stepped = {5, 5, 5, 5, 2, 2, 2, 2};
 
 TEST(PublishedCuts, TakeTheLongestAxisThatHasAClearJumpFirst) {
-  const auto cuts = published_cuts(box, {section(0, stepped), section(1, stepped), section(2, flat)});
+  const auto cuts =
+      published_cuts(box, {section(0, stepped), section(1, stepped), section(2, flat)});
   ASSERT_EQ(cuts.size(), 3U);
   EXPECT_EQ(cuts[0].plane.axis, 0);
   EXPECT_DOUBLE_EQ(cuts[0].plane.offset, 0);
@@ -46,7 +47,8 @@ TEST(PublishedCuts, FallBackToTheMiddleOrSkipAsAsked) {
 }
 
 TEST(PublishedCuts, LeaveABoxThatIsTooThinAlone) {
-  const std::array<CrossSection, 3> thin = {section(0, {1, 1, 1}), section(1, {1}), section(2, {1})};
+  const std::array<CrossSection, 3> thin = {section(0, {1, 1, 1}), section(1, {1}),
+                                            section(2, {1})};
   EXPECT_TRUE(published_cuts(box, thin, {.no_jump = NoJump::middle}).empty());
 }
 
@@ -55,7 +57,9 @@ TEST(PrismaticRatio, LooksAwayFromTheTaperedEnds) {
   EXPECT_DOUBLE_EQ(prismatic_ratio(section(0, {3, 1}), 2), 1);
 }
 
-TEST(CubeRatio, IsShortestOverLongest) { EXPECT_DOUBLE_EQ(cube_ratio(box), 0.5); }
+TEST(CubeRatio, IsShortestOverLongest) {
+  EXPECT_DOUBLE_EQ(cube_ratio(box), 0.5);
+}
 
 } // namespace
 } // namespace cagewright
