@@ -32,3 +32,13 @@ for depth in 0 1 3 5; do
 done
 generate --depth 5 -o "$work/cage.obj"
 draw "$model" "$work/cage.obj" --view -35:12 --beside "$work/stages.png" -o "$images/stages.png"
+
+# Budgets: 50, 100, 200 and 400 vertices.
+for vertices in 50 100 200 400; do
+  generate --vertices "$vertices" -o "$work/cage.obj"
+  beside=()
+  [ "$vertices" = 50 ] || beside=(--beside "$work/budget.png")
+  draw_edited "$model" "$work/cage.obj" --view -35:12 "${beside[@]}" -o "$work/next.png"
+  mv "$work/next.png" "$work/budget.png"
+done
+mv "$work/budget.png" "$images/budget.png"
