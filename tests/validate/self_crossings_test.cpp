@@ -1,12 +1,10 @@
 #include "validate/self_crossings.h"
 
-#include "io/read_mesh.h"
 #include "mesh/shapes.h"
-#include "mesh/triangulate.h"
+#include "support/models.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <ostream>
 #include <string>
 
@@ -47,13 +45,11 @@ void PrintTo(const Known& known, std::ostream* out) {
 class SelfCrossingsOfModel : public testing::TestWithParam<Known> {};
 
 TEST_P(SelfCrossingsOfModel, AreAsPublished) {
-  const char* folder = std::getenv("CAGEWRIGHT_MODELS");
-  if (folder == nullptr) {
-    GTEST_SKIP() << "CAGEWRIGHT_MODELS names no directory of models";
+  const auto model = test::real_model({GetParam().file});
+  if (!model) {
+    GTEST_SKIP() << "CAGEWRIGHT_MODELS names no directory with " << GetParam().file;
   }
-  const auto mesh = read_mesh(std::string(folder) + "/" + GetParam().file);
-  ASSERT_TRUE(mesh) << mesh.error().message;
-  EXPECT_EQ(count_self_crossings(to_triangle_mesh(*mesh)).value(), GetParam().pairs);
+  EXPECT_EQ(count_self_crossings(*model).value(), GetParam().pairs);
 }
 
 INSTANTIATE_TEST_SUITE_P(Packaged, SelfCrossingsOfModel,

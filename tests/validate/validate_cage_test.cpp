@@ -1,15 +1,14 @@
 #include "validate/validate_cage.h"
 
-#include "io/read_mesh.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "mesh/triangulate.h"
+#include "support/models.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <set>
 #include <stop_token>
@@ -124,14 +123,12 @@ TEST(ValidateCage, CertifiesTwoPiecesWhereTheyAreAllowed) {
 }
 
 TEST(ValidateCage, CertifiesAHandMadeCage) {
-  const char* folder = std::getenv("CAGEWRIGHT_MODELS");
-  if (folder == nullptr) {
-    GTEST_SKIP() << "CAGEWRIGHT_MODELS names no directory of models";
+  const auto model = test::real_model({"arm.obj"});
+  const auto cage = test::real_polygons({"arm_cage.obj"});
+  if (!model || !cage) {
+    GTEST_SKIP() << "CAGEWRIGHT_MODELS names no directory with arm.obj and arm_cage.obj";
   }
-  const auto model = read_mesh(std::string(folder) + "/arm.obj");
-  const auto cage = read_mesh(std::string(folder) + "/arm_cage.obj");
-  ASSERT_TRUE(model && cage);
-  EXPECT_EQ(kinds(judge(*cage, to_triangle_mesh(*model))), Kinds{});
+  EXPECT_EQ(kinds(judge(*cage, *model)), Kinds{});
 }
 
 // ---- One defect each
