@@ -1,0 +1,26 @@
+/// \file
+/// The one kind of command: from one state of the document to another.
+#pragma once
+
+#include "app/document/document.h"
+
+#include <QUndoCommand>
+
+namespace cagewright::app {
+
+/// Takes the document from one state to another, and back. States share what they have in common,
+/// so that a step of undo holds little more than what it changed.
+class ChangeState final : public QUndoCommand {
+public:
+  ChangeState(Document& document, State before, State after, const QString& text);
+
+  void undo() override;
+  void redo() override;
+
+private:
+  Document& document_;
+  State before_;
+  State after_;
+};
+
+} // namespace cagewright::app

@@ -1,0 +1,73 @@
+/// \file
+/// All edits of a document: each is a step that undo takes back.
+#pragma once
+
+#include "app/document/document.h"
+
+#include <QObject>
+#include <QString>
+#include <QUndoStack>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace cagewright::app {
+
+/// What panels and tools use to change a document.
+///
+/// Drags are previewed and become one step:
+///
+///     editor.begin_move(vertices);
+///     editor.move_to(positions);    // for each movement of the mouse
+///     editor.end_move("Move");      // or cancel_move()
+class Editor final : public QObject {
+  Q_OBJECT
+
+public:
+  explicit Editor(Document& document, QObject* parent = nullptr);
+
+  [[nodiscard]] Document& document() { return document_; }
+  [[nodiscard]] QUndoStack& undo_stack() { return undo_stack_; }
+
+  // ---- Moving cage vertices
+
+  /// Starts to move these vertices (ascending). Where something else than the edited pose is shown
+  /// (blending, playing), that becomes the pose first.
+  void begin_move(std::vector<Index> vertices);
+  /// Puts the vertices of begin_move() there: one position for each. With stop_at_contact, in
+  /// refine mode, they stop on the way from where they are now where the cage would become
+  /// invalid.
+  void move_to(std::span<const Vec3> positions);
+  /// Makes the movement a step of undo, if there was any.
+  void end_move(const QString& text);
+  /// Puts everything back.
+  void cancel_move();
+  [[nodiscard]] bool moving() const { return move_.has_value(); }
+
+  // ---- Single steps
+
+  /// Another selection.
+  void select(Selection selection);
+  /// The cage after an edit of its topology, in refine mode: vertices and faces as they come. Poses
+  /// and keyframes, which fit the old one, go.
+  void edit_topology(PolygonMesh cage, Selection selection, const QString& text);
+  /// All that undo brings back at once.
+  void change(State state, const QString& text);
+
+Q_SIGNALS:
+  /// A drag stopped short, or something could not be done: for the status bar.
+  void message(const QString& text);
+
+private:
+  struct Move {
+    std::vector<Index> vertices;
+    State before;
+  };
+
+  Document& document_;
+  QUndoStack undo_stack_;
+  std::optional<Move> move_;
+};
+
+} // namespace cagewright::app

@@ -1,0 +1,288 @@
+#include "app/document/document.h"
+
+#include "app/document/time_line.h"
+#include "mesh/measures.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace cagewright::app {
+namespace {
+
+bool same_topology(const PolygonMesh& a, const PolygonMesh& b) {
+  if (a.positions.size() != b.positions.size() || a.face_count() != b.face_count()) {
+    return false;
+  }
+  for (std::size_t f = 0; f < a.face_count(); ++f) {
+    if (!std::ranges::equal(a.face(f), b.face(f))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// A selection may outlive the cage it was made in, for example when a smaller one is generated.
+void cut_to(Selection& selection, const PolygonMesh* cage) {
+  const std::size_t vertices = cage != nullptr ? cage->positions.size() : 0;
+  const std::size_t faces = cage != nullptr ? cage->face_count() : 0;
+  std::erase_if(selection.vertices, [&](Index v) { return v >= vertices; });
+  std::erase_if(selection.faces, [&](Index f) { return f >= faces; });
+  std::erase_if(selection.edges, [&](const EdgeVertices& e) { return e[1] >= vertices; });
+}
+
+bool same_poses(const std::vector<Pose>& a, const std::vector<Pose>& b) {
+  return std::ranges::equal(a, b, [](const Pose& x, const Pose& y) {
+    return x.name == y.name && x.positions == y.positions;
+  });
+}
+
+bool same_time_line(const TimeLine& a, const TimeLine& b) {
+  return a.first == b.first && a.last == b.last && a.frames_per_second == b.frames_per_second &&
+         std::ranges::equal(a.keys, b.keys, [](const Keyframe& x, const Keyframe& y) {
+           return x.frame == y.frame && x.positions == y.positions;
+         });
+}
+
+} // namespace
+
+Document::Document(QObject* parent) : QObject(parent) {}
+
+Document::~Document() = default;
+
+std::span<const Vec3> Document::model_positions() const {
+  if (deformed_) {
+    return deformed_->positions;
+  }
+  return model_ ? std::span<const Vec3>(model_->mesh.positions) : std::span<const Vec3>();
+}
+
+std::span<const Vec3> Document::model_normals() const {
+  if (deformed_) {
+    return deformed_->normals;
+  }
+  return model_ ? std::span<const Vec3>(model_->normals) : std::span<const Vec3>();
+}
+
+std::span<const Triangle> Document::model_triangles() const {
+  return model_ ? std::span<const Triangle>(model_->triangles) : std::span<const Triangle>();
+}
+
+double Document::diagonal() const {
+  if (model_) {
+    return model_->diagonal;
+  }
+  const double of_cage = has_cage() ? cagewright::diagonal(state_.rest->positions) : 0;
+  return of_cage > 0 ? of_cage : 1;
+}
+
+Box3 Document::bounds() const {
+  Box3 box = bounding_box(model_positions());
+  box.extend(bounding_box(shown_cage_positions()));
+  return box;
+}
+
+std::span<const Vec3> Document::cage_positions() const {
+  return state_.cage ? std::span<const Vec3>(*state_.cage) : std::span<const Vec3>();
+}
+
+std::span<const Vec3> Document::shown_cage_positions() const {
+  return shown_ ? std::span<const Vec3>(*shown_) : cage_positions();
+}
+
+PolygonMesh Document::cage() const {
+  PolygonMesh cage;
+  if (has_cage()) {
+    cage = *state_.rest;
+    cage.positions = *state_.cage;
+  }
+  return cage;
+}
+
+int Document::stage_depth() const {
+  int depth = 0;
+  if (state_.stages) {
+    for (const BoxNode& node : state_.stages->tree.nodes) {
+      depth = std::max(depth, node.depth);
+    }
+  }
+  return depth;
+}
+
+void Document::set_layers(const Layers& layers) {
+  if (layers != layers_) {
+    layers_ = layers;
+    Q_EMIT layersChanged();
+  }
+}
+
+void Document::set_tools(const ToolSettings& tools) {
+  if (tools != tools_) {
+    tools_ = tools;
+    Q_EMIT toolsChanged();
+  }
+}
+
+void Document::set_comparing(bool comparing) {
+  if (comparing != comparing_) {
+    comparing_ = comparing;
+    update_shown();
+    Q_EMIT viewStateChanged();
+    Q_EMIT cageMoved();
+  }
+}
+
+void Document::set_blend(double blend) {
+  if (blend != blend_) {
+    blend_ = blend;
+    update_shown();
+    Q_EMIT viewStateChanged();
+    Q_EMIT cageMoved();
+  }
+}
+
+void Document::set_time(std::optional<double> frame) {
+  if (frame != time_) {
+    time_ = frame;
+    update_shown();
+    Q_EMIT viewStateChanged();
+    Q_EMIT cageMoved();
+  }
+}
+
+void Document::adopt_shown_cage() {
+  if (!shown_) {
+    return;
+  }
+  state_.cage = shown_;
+  comparing_ = false;
+  blend_ = 1;
+  time_.reset();
+  shown_.reset();
+  Q_EMIT viewStateChanged();
+  Q_EMIT cageMoved();
+}
+
+void Document::update_shown() {
+  shown_.reset();
+  if (mode() == Mode::refine || !has_cage()) {
+    return;
+  }
+  if (comparing_) {
+    shown_ = std::make_shared<const std::vector<Vec3>>(state_.rest->positions);
+    return;
+  }
+  if (time_ && !state_.time_line.keys.empty()) {
+    shown_ = std::make_shared<const std::vector<Vec3>>(cage_at(state_.time_line, *time_));
+  }
+  if (blend_ != 1) {
+    std::vector<Vec3> blended(shown_cage_positions().begin(), shown_cage_positions().end());
+    for (std::size_t v = 0; v < blended.size(); ++v) {
+      blended[v] = state_.rest->positions[v] + blend_ * (blended[v] - state_.rest->positions[v]);
+    }
+    shown_ = std::make_shared<const std::vector<Vec3>>(std::move(blended));
+  }
+}
+
+void Document::set_model(std::shared_ptr<const Model> model) {
+  set_state({});
+  model_ = std::move(model);
+  deformed_.reset();
+  set_metrics({});
+  Q_EMIT modelChanged();
+  Q_EMIT modelMoved();
+}
+
+void Document::set_state(const State& state) {
+  const State old = std::exchange(state_, state);
+  cut_to(state_.selection, state_.rest.get());
+  if (state_.binding != old.binding) {
+    comparing_ = false;
+    blend_ = 1;
+    time_.reset();
+    deformed_.reset();
+    model_weights_.clear();
+  }
+  update_shown();
+
+  const bool other_cage =
+      (old.rest == nullptr) != (state_.rest == nullptr) ||
+      (state_.rest && state_.rest != old.rest && !same_topology(*state_.rest, *old.rest));
+  if (other_cage) {
+    offending_faces_.clear();
+    check_ = {};
+    cage_distances_.clear();
+  }
+  if (state_.stages != old.stages) {
+    layers_.selected_box = -1;
+    Q_EMIT stagesChanged();
+  }
+  if (other_cage) {
+    Q_EMIT cageChanged();
+  } else if (state_.cage != old.cage || state_.rest != old.rest) {
+    Q_EMIT cageMoved();
+  }
+  if (state_.binding != old.binding) {
+    Q_EMIT modeChanged();
+    Q_EMIT modelMoved();
+    Q_EMIT viewStateChanged();
+  }
+  if (state_.selection != old.selection) {
+    Q_EMIT selectionChanged();
+  }
+  if (!same_poses(state_.poses, old.poses)) {
+    Q_EMIT posesChanged();
+  }
+  if (!same_time_line(state_.time_line, old.time_line)) {
+    Q_EMIT timeLineChanged();
+  }
+}
+
+void Document::move_cage(std::span<const Index> vertices, std::span<const Vec3> to) {
+  std::vector<Vec3> positions = *state_.cage;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    positions[vertices[i]] = to[i];
+  }
+  state_.cage = std::make_shared<const std::vector<Vec3>>(std::move(positions));
+  update_shown();
+  Q_EMIT cageMoved();
+}
+
+void Document::set_stages(std::shared_ptr<const BoxDecomposition> stages) {
+  state_.stages = std::move(stages);
+  layers_.selected_box = -1;
+  Q_EMIT stagesChanged();
+}
+
+void Document::set_check(CageCheck check) {
+  check_ = std::move(check);
+  Q_EMIT checkChanged();
+}
+
+void Document::set_offending_faces(std::vector<Index> faces) {
+  if (faces != offending_faces_) {
+    offending_faces_ = std::move(faces);
+    Q_EMIT checkChanged();
+  }
+}
+
+void Document::set_metrics(std::optional<CageMetrics> metrics) {
+  metrics_ = std::move(metrics);
+  Q_EMIT metricsChanged();
+}
+
+void Document::set_deformed(std::shared_ptr<const DeformedModel> deformed) {
+  deformed_ = std::move(deformed);
+  Q_EMIT modelMoved();
+}
+
+void Document::set_cage_distances(std::vector<float> distances) {
+  cage_distances_ = std::move(distances);
+  Q_EMIT colorsChanged();
+}
+
+void Document::set_model_weights(std::vector<float> weights) {
+  model_weights_ = std::move(weights);
+  Q_EMIT colorsChanged();
+}
+
+} // namespace cagewright::app

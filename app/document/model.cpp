@@ -1,0 +1,58 @@
+#include "app/document/model.h"
+
+#include "deform/normals.h"
+#include "deform/weights_file.h"
+#include "io/read_mesh.h"
+#include "mesh/measures.h"
+#include "mesh/triangulate.h"
+
+#include <utility>
+
+namespace cagewright::app {
+
+Result<std::shared_ptr<const Model>> open_model(const std::filesystem::path& path,
+                                                const Progress& progress) {
+  progress(0, "reading");
+  Result<PolygonMesh> mesh = read_mesh(path);
+  if (!mesh) {
+    return mesh.error();
+  }
+  return prepare_model(std::move(*mesh), path, progress.part(0.5, 1));
+}
+
+Result<std::shared_ptr<const Model>>
+prepare_model(PolygonMesh mesh, const std::filesystem::path& path, const Progress& progress) {
+  auto model = std::make_shared<Model>();
+  model->mesh = std::move(mesh);
+  model->path = path;
+  model->box = bounding_box(model->mesh.positions);
+  model->diagonal = diagonal(model->mesh.positions);
+  if (!(model->diagonal > 0)) {
+    return Error{ErrorCode::unfit_model, path.string() + ": the model has no extent"};
+  }
+  progress(0, "cutting faces into triangles");
+  model->triangles = triangulate(model->mesh).triangles;
+  progress(0.2, "normals");
+  const NormalField normals(model->mesh, smooth_normals(model->mesh));
+  model->normals.assign(normals.normals().begin(), normals.normals().end());
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
+  progress(0.5, "hierarchy of boxes");
+  model->bvh = TriangleBvh(model->view());
+  model->checksum = checksum(model->mesh.positions);
+  if (!path.empty()) {
+    Result<FileNormals> stored = read_normals(path);
+    if (!stored) {
+      return stored.error();
+    }
+    model->file_normals = std::move(*stored);
+  }
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
+  progress(1, "done");
+  return std::shared_ptr<const Model>(std::move(model));
+}
+
+} // namespace cagewright::app

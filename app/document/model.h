@@ -1,0 +1,41 @@
+/// \file
+/// A model as it was opened: never changed, shared by the document and the jobs.
+#pragma once
+
+#include "core/progress.h"
+#include "core/result.h"
+#include "io/rewrite_positions.h"
+#include "mesh/polygon_mesh.h"
+#include "spatial/bvh.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace cagewright::app {
+
+struct Model {
+  PolygonMesh mesh;
+  std::vector<Triangle> triangles; ///< T: the faces, cut
+  std::vector<Vec3> normals;       ///< V smooth unit normals
+  TriangleBvh bvh;                 ///< over the triangles
+  FileNormals file_normals;        ///< as stored in the file, if any
+  Box3 box;                        ///< of all vertices
+  double diagonal = 1;             ///< of that box; the unit of all tolerances
+  std::filesystem::path path;
+  std::uint64_t checksum = 0; ///< of the positions
+
+  [[nodiscard]] TriangleView view() const { return {mesh.positions, triangles}; }
+};
+
+/// Reads a model and prepares what the application needs of it.
+/// Errors: those of read_mesh(); unfit_model (no extent); cancelled.
+Result<std::shared_ptr<const Model>> open_model(const std::filesystem::path& path,
+                                                const Progress& progress = {});
+
+/// The same of a mesh in memory; `path` may be empty.
+Result<std::shared_ptr<const Model>>
+prepare_model(PolygonMesh mesh, const std::filesystem::path& path, const Progress& progress = {});
+
+} // namespace cagewright::app

@@ -1,0 +1,59 @@
+/// \file
+/// All of a document that undo brings back.
+#pragma once
+
+#include "app/edit/selection.h"
+#include "cage/decompose.h"
+#include "core/geometry.h"
+#include "mesh/polygon_mesh.h"
+
+#include <QString>
+
+#include <memory>
+#include <vector>
+
+namespace cagewright::app {
+
+class Binding;
+
+enum class Mode {
+  refine, ///< the cage is edited: its rest is what moves
+  deform, ///< the model is bound: the cage's pose moves, and the model with it
+};
+
+/// Positions that are shared, because states are copied for every step of undo.
+using SharedPositions = std::shared_ptr<const std::vector<Vec3>>;
+
+/// A state of the cage with a name.
+struct Pose {
+  QString name;
+  SharedPositions positions; ///< C
+};
+
+/// A state of the cage at a time.
+struct Keyframe {
+  int frame = 0;
+  SharedPositions positions; ///< C
+};
+
+struct TimeLine {
+  std::vector<Keyframe> keys; ///< by frame, each frame once
+  int first = 1;
+  int last = 100;
+  double frames_per_second = 24;
+};
+
+/// Cheap to copy: everything large is shared and never changed.
+struct State {
+  std::shared_ptr<const PolygonMesh> rest; ///< the cage at rest; null: there is none
+  /// The cage as it is edited, C positions: in refine mode those of `rest` in effect, with drags
+  /// that moved them.
+  SharedPositions cage;
+  std::shared_ptr<const Binding> binding; ///< null in refine mode
+  Selection selection;
+  std::vector<Pose> poses;
+  TimeLine time_line;
+  std::shared_ptr<const BoxDecomposition> stages; ///< null: none were made
+};
+
+} // namespace cagewright::app

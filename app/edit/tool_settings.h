@@ -1,0 +1,27 @@
+/// \file
+/// How the tools of the viewport behave: shown and changed by the tool bar, read by the tools.
+#pragma once
+
+namespace cagewright::app {
+
+enum class Tool { select_box, select_lasso, translate, rotate, scale };
+enum class AxesKind { world, local, view };
+enum class Falloff { smooth, linear, sharp };
+
+struct ToolSettings {
+  Tool tool = Tool::translate; ///< clicking selects with every tool
+  AxesKind axes = AxesKind::world;
+  bool snap = false;
+  double snap_step = 0.01;          ///< of translations, a fraction of the model's diagonal
+  double snap_angle_degrees = 15;   ///< of rotations
+  double snap_scale = 0.1;          ///< of scalings
+  bool proportional = false;        ///< neighbors follow, less with distance
+  double proportional_radius = 0.1; ///< a fraction of the model's diagonal
+  Falloff falloff = Falloff::smooth;
+  bool symmetric = false;       ///< the mirror image follows
+  int symmetry_axis = 0;        ///< normal of the mirror plane: 0 x, 1 y, 2 z
+  bool stop_at_contact = false; ///< refining: a drag goes no further than the cage stays valid
+  friend bool operator==(const ToolSettings&, const ToolSettings&) = default;
+};
+
+} // namespace cagewright::app

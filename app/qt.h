@@ -1,0 +1,6 @@
+/// \file
+/// The Qt headers of the application, precompiled: they cost seconds a file otherwise.
+#pragma once
+
+#include <QtCore>
+#include <QtWidgets>
