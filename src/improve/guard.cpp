@@ -140,7 +140,7 @@ void FaceBoxes::find(const Box3& box, std::vector<Index>& found) const {
 ModelSurface::ModelSurface(TriangleView model)
     : tree(model), diagonal(bounding_box(model).diagonal().norm()), parts(connected_parts(model)) {}
 
-std::optional<NearestPair> Guard::too_near(const CageMesh& cage, const Patch& patch) const {
+std::optional<ClosestPoints> Guard::too_near(const CageMesh& cage, const Patch& patch) const {
   for (const Triangle& t : patch.added) {
     if (const auto pair = model_->tree.too_near(corners_after(cage, patch, t), clearance_)) {
       return pair;

@@ -55,7 +55,8 @@ public:
 
   /// The place where the patch's new faces come too near to the model, if there is one. Depends on
   /// the new faces alone, not on the rest of the cage.
-  [[nodiscard]] std::optional<NearestPair> too_near(const CageMesh& cage, const Patch& patch) const;
+  [[nodiscard]] std::optional<ClosestPoints> too_near(const CageMesh& cage,
+                                                      const Patch& patch) const;
 
   /// True when the patch's new faces cross each other or other faces of the cage: by exact
   /// predicates. Goes stale when any other part of the cage changes.

@@ -194,6 +194,16 @@ Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOp
       !(options.square >= 0) || !(options.shape >= 0) || !(options.careful_from >= 1)) {
     return Error{ErrorCode::invalid_option, "an option of the improvement is out of its range"};
   }
+  if (!options.density.empty() && options.density.size() != model.positions.size()) {
+    return Error{ErrorCode::invalid_option, "there are " + std::to_string(options.density.size()) +
+                                                " densities, but the model has " +
+                                                std::to_string(model.positions.size()) +
+                                                " vertices"};
+  }
+  if (!std::all_of(options.density.begin(), options.density.end(),
+                   [](double d) { return d > 0 && std::isfinite(d); })) {
+    return Error{ErrorCode::invalid_option, "a density is not a finite number above 0"};
+  }
   return Improvement(start, with_strays(model), options).run(progress);
 }
 

@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "mesh/triangle_mesh.h"
 
+#include <span>
 #include <string>
 
 namespace cagewright {
@@ -24,6 +25,11 @@ struct ImproveOptions {
   /// How many times its final number of vertices the cage has when the quick way of simplifying it,
   /// which lets it grow, gives way to the careful one.
   double careful_from = 4;
+  /// Where the cage is to be finer: one weight above 0 for each vertex of the model, or empty:
+  /// even. Only ratios matter. Where the weight is four times as large the edges of the cage come
+  /// out about half as long (edge length ~ 1 / sqrt(density)); ratios beyond 100 count as 100. The
+  /// view must live as long as the call.
+  std::span<const double> density = {};
 };
 
 struct ImproveReport {

@@ -95,11 +95,12 @@ public:
   }
 
   // A half space that drives the face apart from the pair. \returns false if w has no say in it
-  bool add_separation(std::vector<HalfSpace>& spaces, const NearestPair& pair) const {
+  bool add_separation(std::vector<HalfSpace>& spaces, const ClosestPoints& pair) const {
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < size(); ++i) {
-      const double d = (nearest_in_triangle(pair.first, corners(i)) - pair.first).squaredNorm();
+      const double d =
+          point_triangle_distance(pair.on_a, corners(i)[0], corners(i)[1], corners(i)[2]);
       if (d < least) {
         least = d;
         nearest = i;
@@ -108,16 +109,15 @@ public:
     const Corners t = corners(nearest);
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
     const double share =
-        (t[2] - t[1]).cross(pair.first - t[1]).dot(n) / std::max(n.squaredNorm(), 1e-300);
-    const double distance = std::sqrt(pair.squared);
+        (t[2] - t[1]).cross(pair.on_a - t[1]).dot(n) / std::max(n.squaredNorm(), 1e-300);
     constexpr double least_share = 0.02;
     if (share < least_share) {
       return false;
     }
-    const Vec3 away = distance > 0.01 * guard_.clearance()
-                          ? Vec3((pair.first - pair.second) / distance)
+    const Vec3 away = pair.distance > 0.01 * guard_.clearance()
+                          ? Vec3((pair.on_a - pair.on_b) / pair.distance)
                           : Vec3(n.normalized());
-    const double push = (margin * guard_.clearance() - distance) / share;
+    const double push = (margin * guard_.clearance() - pair.distance) / share;
     spaces.push_back({-away, -away.dot(patch_.position) - push});
     return true;
   }
@@ -222,7 +222,7 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
   int taken = 1;
   for (int round = 0; round < most_rounds; ++round) {
     if (fan.add_blocked(spaces) == 0) {
-      const std::optional<NearestPair> pair = guard.too_near(cage, patch);
+      const std::optional<ClosestPoints> pair = guard.too_near(cage, patch);
       if (!pair) {
         const bool settled = best && (*best - patch.position).norm() < guard.clearance() / 4;
         best = patch.position;

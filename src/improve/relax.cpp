@@ -243,9 +243,9 @@ private:
       }
     }
     if (const auto pair = objective_.model().tree.nearest_to(t, guard_.clearance())) {
-      const double distance = std::sqrt(pair->squared);
-      const Vec3 u = distance > 0.01 * keep ? Vec3((pair->first - pair->second) / distance) : n;
-      constraints.push_back({vertices, barycentric(pair->first, t), u, keep - distance});
+      const double distance = pair->distance;
+      const Vec3 u = distance > 0.01 * keep ? Vec3((pair->on_a - pair->on_b) / distance) : n;
+      constraints.push_back({vertices, barycentric(pair->on_a, t), u, keep - distance});
     }
   }
 

@@ -19,6 +19,10 @@ constexpr float rounding = 4e-6F;
 // Half the size of the box of an empty slot.
 constexpr float nothing = -1e30F;
 
+Vec3 nearest_on(const Corners& t, const Vec3& p) {
+  return nearest_on_triangle(p, t[0], t[1], t[2]);
+}
+
 // Lower bounds of the distance to a triangle: along the axes of its box, its normal, and the
 // outward normals of its sides.
 class TriangleBound {
@@ -254,7 +258,7 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double e
       continue;
     }
     if ((entry.child & leaf_bit) != 0) {
-      const Vec3 at = nearest_in_triangle(p, triangles_[entry.child & ~leaf_bit]);
+      const Vec3 at = nearest_on(triangles_[entry.child & ~leaf_bit], p);
       const double squared = (at - p).squaredNorm();
       if (squared < bound) {
         bound = squared;
@@ -353,11 +357,11 @@ void SurfaceTree::visit_near(const Corners& triangle, double within, Visit visit
   }
 }
 
-std::optional<NearestPair> SurfaceTree::too_near(const Corners& triangle, double distance) const {
-  std::optional<NearestPair> found;
+std::optional<ClosestPoints> SurfaceTree::too_near(const Corners& triangle, double distance) const {
+  std::optional<ClosestPoints> found;
   visit_near(triangle, distance, [&](const Corners& other) {
-    const NearestPair pair = nearest_of_triangles(triangle, other);
-    if (pair.squared < distance * distance) {
+    const ClosestPoints pair = triangle_triangle_closest(triangle.at, other.at);
+    if (pair.distance < distance) {
       found = pair;
       return 0.0; // enough
     }
@@ -366,14 +370,14 @@ std::optional<NearestPair> SurfaceTree::too_near(const Corners& triangle, double
   return found;
 }
 
-std::optional<NearestPair> SurfaceTree::nearest_to(const Corners& triangle, double within) const {
-  std::optional<NearestPair> best;
+std::optional<ClosestPoints> SurfaceTree::nearest_to(const Corners& triangle, double within) const {
+  std::optional<ClosestPoints> best;
   double least = within;
   visit_near(triangle, within, [&](const Corners& other) {
-    const NearestPair pair = nearest_of_triangles(triangle, other);
-    if (pair.squared < least * least) {
+    const ClosestPoints pair = triangle_triangle_closest(triangle.at, other.at);
+    if (pair.distance < least) {
       best = pair;
-      least = std::sqrt(pair.squared);
+      least = pair.distance;
     }
     return least;
   });

@@ -2,8 +2,8 @@
 /// The model as the improvement asks for it: how near, how clear, how high.
 #pragma once
 
-#include "improve/closest.h"
 #include "mesh/triangle_mesh.h"
+#include "spatial/distance.h"
 
 #include <array>
 #include <limits>
@@ -12,6 +12,15 @@
 #include <vector>
 
 namespace cagewright {
+
+/// The corners of a triangle, by value.
+struct Corners {
+  Vec3 at[3];
+
+  const Vec3& operator[](std::size_t i) const { return at[i]; }
+  [[nodiscard]] const Vec3* begin() const { return at; }
+  [[nodiscard]] const Vec3* end() const { return at + 3; }
+};
 
 /// A half space: the points x with normal . x <= offset.
 struct HalfSpace {
@@ -39,12 +48,14 @@ public:
                                 double within = std::numeric_limits<double>::infinity(),
                                 double error = 0) const;
 
-  /// A pair of points of the triangle (first) and of the model (second) nearer than `distance`,
+  /// A pair of points of the triangle (a) and of the model (b) nearer than `distance`,
   /// if there is one: any, not the nearest. None: the triangle keeps this distance everywhere.
-  [[nodiscard]] std::optional<NearestPair> too_near(const Corners& triangle, double distance) const;
+  [[nodiscard]] std::optional<ClosestPoints> too_near(const Corners& triangle,
+                                                      double distance) const;
 
   /// The same, but the nearest pair of all.
-  [[nodiscard]] std::optional<NearestPair> nearest_to(const Corners& triangle, double within) const;
+  [[nodiscard]] std::optional<ClosestPoints> nearest_to(const Corners& triangle,
+                                                        double within) const;
 
   struct Highest {
     double height = 0;

@@ -126,6 +126,11 @@ TEST(Improve, RefusesWhatItCannotWorkWith) {
   EXPECT_EQ(improve(cube, TriangleMesh()).error().code, ErrorCode::unfit_model);
   EXPECT_EQ(improve(cube, cube, {.clearance = 0}).error().code, ErrorCode::invalid_option);
   EXPECT_EQ(improve(cube, cube, {.vertices = -1}).error().code, ErrorCode::invalid_option);
+  const std::vector<double> seven(7, 1.0);
+  EXPECT_EQ(improve(cube, cube, {.density = seven}).error().message,
+            "there are 7 densities, but the model has 8 vertices");
+  const std::vector<double> none(8, 0.0);
+  EXPECT_EQ(improve(cube, cube, {.density = none}).error().code, ErrorCode::invalid_option);
 }
 
 TEST(Improve, StopsWhenAsked) {
