@@ -1,3 +1,4 @@
+#include "json.h"
 #include "session.h"
 
 #include "exact/predicates.h"
@@ -188,19 +189,6 @@ std::string describe_sizes(const Info& info) {
   return text;
 }
 
-nlohmann::json to_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-nlohmann::json to_json(const OrientedBox& box) {
-  return {{"center", to_json(box.center)},
-          {"axes",
-           {to_json(Vec3(box.axes.col(0))), to_json(Vec3(box.axes.col(1))),
-            to_json(Vec3(box.axes.col(2)))}},
-          {"half", to_json(box.half)},
-          {"volume", box.volume()}};
-}
-
 nlohmann::json to_json(const Info& info) {
   const TopologyReport& topology = info.topology;
   nlohmann::json json = {{"vertices", info.vertices},
@@ -231,7 +219,7 @@ nlohmann::json to_json(const Info& info) {
     json["faces_by_sides"][std::to_string(sides)] = count;
   }
   for (const auto& [key, title, box] : info.boxes) {
-    json["boxes"][key] = to_json(box);
+    json["boxes"][key] = json_of(box);
   }
   return json;
 }

@@ -1,6 +1,7 @@
-#include "generate_report.h"
+#include "generate/report.h"
 
 #include "cage_figures.h"
+#include "json.h"
 
 #include <fmt/format.h>
 
@@ -8,19 +9,6 @@
 
 namespace cagewright::cli {
 namespace {
-
-nlohmann::json to_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-nlohmann::json to_json(const OrientedBox& box) {
-  return {{"center", to_json(box.center)},
-          {"axes",
-           {to_json(Vec3(box.axes.col(0))), to_json(Vec3(box.axes.col(1))),
-            to_json(Vec3(box.axes.col(2)))}},
-          {"half_lengths", to_json(box.half)},
-          {"volume", box.volume()}};
-}
 
 /// Lengths and areas of a box's cross-sections, from voxels to the model's unit.
 nlohmann::json to_json(const CrossSection& section, double voxel) {
@@ -41,15 +29,15 @@ nlohmann::json to_json(const CrossSection& section, double voxel) {
 nlohmann::json to_json(const Cut& cut, const BoxDecomposition& boxes) {
   return {{"axis", cut.plane.axis},
           {"offset", cut.plane.offset * boxes.voxel_size()},
-          {"point", to_json(boxes.to_model(cut.point))},
-          {"normal", to_json(Vec3(boxes.grid.axes * cut.normal))},
+          {"point", json_of(boxes.to_model(cut.point))},
+          {"normal", json_of(Vec3(boxes.grid.axes * cut.normal))},
           {"jump", cut.jump},
           {"gain", cut.gain},
           {"middle", cut.middle}};
 }
 
 nlohmann::json to_json(const BoxNode& node, int index, const BoxDecomposition& boxes) {
-  nlohmann::json j = to_json(boxes.to_model(node.box));
+  nlohmann::json j = json_of(boxes.to_model(node.box));
   j["node"] = index;
   j["parent"] = node.parent;
   j["depth"] = node.depth;

@@ -1,0 +1,139 @@
+#include "generate/run.h"
+
+#include "generate/report.h"
+#include "load.h"
+
+#include "cage/hexahedron.h"
+#include "io/atomic_file.h"
+#include "io/write_mesh.h"
+#include "validate/cage_metrics.h"
+#include "voxel/voxel_mesh.h"
+
+#include <array>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+namespace cagewright::cli {
+namespace {
+
+void say(const Session& session, const std::string& text) {
+  if (!session.quiet) {
+    std::fputs(text.c_str(), stdout);
+  }
+}
+
+/// One object for each box, in the model's own coordinates.
+PolygonMesh box_objects(const BoxDecomposition& boxes, const std::vector<int>& cover) {
+  PolygonMesh mesh;
+  for (const int at : cover) {
+    const auto first = static_cast<Index>(mesh.positions.size());
+    for (const Vec3& corner : boxes.tree.nodes[static_cast<std::size_t>(at)].box.corners()) {
+      mesh.positions.push_back(boxes.to_model(corner));
+    }
+    for (const std::array<Index, 4>& face : hexahedron_faces) {
+      mesh.add_face({face[0] + first, face[1] + first, face[2] + first, face[3] + first});
+      mesh.face_groups.push_back(static_cast<Index>(mesh.group_names.size()));
+    }
+    mesh.group_names.push_back("box_" + std::to_string(at));
+  }
+  return mesh;
+}
+
+PolygonMesh voxel_objects(const BoxDecomposition& boxes) {
+  PolygonMesh mesh = voxel_boxes(boxes.grid);
+  for (Vec3& p : mesh.positions) {
+    p = boxes.frame.from_unit(p);
+  }
+  return mesh;
+}
+
+/// Writes the JSON first: should the mesh fail then, no result stands without its description.
+Status write_outputs(const GenerateArguments& arguments, const PolygonMesh& mesh,
+                     const nlohmann::json& description) {
+  if (!arguments.json.empty()) {
+    const Status written = write_file_atomically(arguments.json, description.dump(1) + "\n");
+    if (!written) {
+      return written;
+    }
+  }
+  return write_mesh(mesh, arguments.output);
+}
+
+int emit_stage(const GenerateArguments& arguments, const Session& session,
+               const TriangleMesh& model) {
+  const Result<BoxDecomposition> boxes =
+      decompose(model, arguments.options.boxes, session.progress());
+  if (!boxes) {
+    return fail(in_file(arguments.model, boxes.error()));
+  }
+  const std::vector<int> cover = boxes->tree.cover();
+  const PolygonMesh mesh =
+      arguments.emit == Emit::boxes ? box_objects(*boxes, cover) : voxel_objects(*boxes);
+  if (const Status written = write_outputs(arguments, mesh, to_json(*boxes, cover)); !written) {
+    return fail(written.error());
+  }
+  say(session, summary(*boxes, cover));
+  return done;
+}
+
+int make_cage(const GenerateArguments& arguments, const Session& session,
+              const TriangleMesh& model) {
+  const Progress progress = session.progress();
+  const Result<GeneratedCage> made =
+      generate_cage(model, arguments.options, progress.part(0, 0.97));
+  if (!made) {
+    return fail(in_file(arguments.model, made.error()));
+  }
+  const CageMetrics metrics = measure_cage(made->cage, model);
+  progress(1, "done");
+  if (const Status written =
+          write_outputs(arguments, PolygonMesh(made->cage), to_json(*made, metrics));
+      !written) {
+    return fail(written.error());
+  }
+  say(session, summary(*made, metrics));
+  return done;
+}
+
+int make_cage_within_budget(const GenerateArguments& arguments, const Session& session,
+                            const TriangleMesh& model) {
+  const Progress progress = session.progress();
+  BudgetCageOptions options = arguments.budget;
+  options.boxes = arguments.options;
+  if (arguments.vertices > 0 || options.improve.faces > 0) {
+    options.improve.vertices = arguments.vertices;
+  }
+  const Result<BudgetCage> made = make_budget_cage(model, options, progress.part(0, 0.97));
+  if (!made) {
+    return fail(in_file(arguments.model, made.error()));
+  }
+  const CageMetrics metrics = measure_cage(made->cage, model);
+  progress(1, "done");
+  if (const Status written =
+          write_outputs(arguments, PolygonMesh(made->cage), to_json(*made, metrics));
+      !written) {
+    return fail(written.error());
+  }
+  say(session, summary(*made, metrics));
+  return done;
+}
+
+} // namespace
+
+int run_generate(const GenerateArguments& arguments, const Session& session) {
+  if (const Status writable = can_write_mesh(arguments.output); !writable) {
+    return fail(writable.error());
+  }
+  const Result<TriangleMesh> model = load_triangles(arguments.model);
+  if (!model) {
+    return fail(model.error());
+  }
+  if (arguments.emit != Emit::cage) {
+    return emit_stage(arguments, session, *model);
+  }
+  return arguments.has_budget ? make_cage_within_budget(arguments, session, *model)
+                              : make_cage(arguments, session, *model);
+}
+
+} // namespace cagewright::cli
