@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cagewright {
@@ -22,10 +23,18 @@ namespace {
 // The margin is a little more than the clearance: the surface of the voxels is then strictly clear.
 constexpr double margin_factor = 1.05;
 
+double unit_of(TriangleView model, const EnvelopeOptions& options) {
+  return options.diagonal > 0 ? options.diagonal : diagonal(model.positions);
+}
+
 Result<VoxelGrid> voxels(TriangleView model, const EnvelopeOptions& options, int resolution,
                          const Progress& progress) {
-  const Box3 box = bounding_box(model.positions);
-  const double diagonal = box.diagonal().norm();
+  Box3 box = bounding_box(model.positions);
+  if (options.half) {
+    box.extend(Vec3(-box.min().x(), box.min().y(), box.min().z()));
+    box.extend(Vec3(-box.max().x(), box.max().y(), box.max().z()));
+  }
+  const double diagonal = unit_of(model, options);
   OrientedBox frame;
   frame.center = box.center();
   frame.axes = Mat3::Identity();
@@ -35,7 +44,55 @@ Result<VoxelGrid> voxels(TriangleView model, const EnvelopeOptions& options, int
   voxel.resolution = std::max(2, static_cast<int>(std::lround(across)) + 1);
   const double size = 2 * frame.half.maxCoeff() / (voxel.resolution - 1);
   voxel.margin = margin_factor * options.clearance * diagonal / size;
+  if (options.half) {
+    // So many voxels and a half on either side that the plane lies between two layers, and that the
+    // layers reach as far on one side as on the other.
+    frame.center.x() = 0;
+    const double reach = frame.half.x() / size + voxel.margin + 0.01;
+    const int layers = static_cast<int>(std::ceil(reach - 0.5));
+    const bool longest = (layers + 0.5) * size >= frame.half.maxCoeff();
+    frame.half.x() = (layers + 0.5) * size;
+    voxel.resolution = longest ? 2 * layers + 2 : voxel.resolution;
+  }
   return voxelize(model, frame, voxel, progress);
+}
+
+// Occupies the mirror images of all occupied voxels. \returns how many were added
+std::size_t mirror(VoxelGrid& grid) {
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < grid.kinds.size(); ++i) {
+    const auto [x, y, z] = grid.cell(i);
+    VoxelKind& image = grid.kinds[grid.index(grid.dims[0] - 1 - x, y, z)];
+    if (grid.occupied(i) && image == VoxelKind::outer) {
+      image = grid.kinds[i];
+      ++added;
+    }
+  }
+  return added;
+}
+
+// The part at x >= 0 of a surface of voxels which the plane x = 0 does not cut through.
+TriangleMesh half_of(TriangleMesh mesh, double voxel) {
+  for (Vec3& p : mesh.positions) {
+    p.x() = std::abs(p.x()) < voxel / 4 ? 0 : p.x();
+  }
+  TriangleMesh half;
+  constexpr auto none = ~Index{0};
+  std::vector<Index> number(mesh.positions.size(), none);
+  for (Triangle t : mesh.triangles) {
+    if (std::none_of(t.begin(), t.end(), [&](Index v) { return mesh.positions[v].x() > 0; })) {
+      continue;
+    }
+    for (Index& v : t) {
+      if (number[v] == none) {
+        number[v] = static_cast<Index>(half.positions.size());
+        half.positions.push_back(mesh.positions[v]);
+      }
+      v = number[v];
+    }
+    half.triangles.push_back(t);
+  }
+  return half;
 }
 
 // Adds to the set every voxel whose center is within `reach` voxels of the center of one in it.
@@ -113,14 +170,21 @@ Result<Envelope> at_resolution(TriangleView model, const EnvelopeOptions& option
     return grid.error();
   }
   if (options.closing > 0) {
-    close_gaps(*grid, options.closing * diagonal(model.positions) / grid->size);
+    close_gaps(*grid, options.closing * unit_of(model, options) / grid->size);
+  }
+  if (options.half) {
+    mirror(*grid);
   }
   Envelope result;
   result.resolution = resolution;
   result.bridges = join_pieces(*grid);
+  std::size_t changed = 0;
   do {
+    changed = options.half ? mirror(*grid) : 0; // neither bridges nor repairs heed the plane
     make_well_composed(*grid);
-  } while (fill_cavities(*grid) > 0);
+    changed += options.half ? mirror(*grid) : 0;
+    changed += fill_cavities(*grid);
+  } while (changed > 0);
   for (VoxelKind& kind : grid->kinds) {
     kind = kind == VoxelKind::outer ? kind : VoxelKind::feature;
   }
@@ -128,6 +192,9 @@ Result<Envelope> at_resolution(TriangleView model, const EnvelopeOptions& option
   const auto euler = static_cast<long>(result.mesh.positions.size()) -
                      static_cast<long>(result.mesh.triangles.size() / 2);
   result.genus = static_cast<int>(1 - euler / 2);
+  if (options.half) {
+    result.mesh = half_of(std::move(result.mesh), grid->size);
+  }
   return result;
 }
 

@@ -17,13 +17,19 @@ struct EnvelopeOptions {
   double clearance = 0.002; ///< least distance to the model, in diagonals of its bounding box
   /// Holes and gaps narrower than twice this, in diagonals, are filled.
   double closing = 0;
+  /// Make the envelope of the model and its mirror image in the plane x = 0, and return the half of
+  /// it at x >= 0: open, the boundary on the plane exactly, no face in it, and no edge of two faces
+  /// between two vertices of the plane.
+  bool half = false;
+  /// What lengths are fractions of. 0: the diagonal of the model's box.
+  double diagonal = 0;
 };
 
 /// A closed surface round a model, and what is known about it.
 struct Envelope {
   TriangleMesh mesh;
   int resolution = 0; ///< voxels along the model's diagonal
-  int genus = 0;      ///< handles of the surface
+  int genus = 0;      ///< handles of the whole surface
   int bridges = 0;    ///< rods of voxels added to join the model's pieces
 };
 

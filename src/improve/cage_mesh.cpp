@@ -1,6 +1,7 @@
 #include "improve/cage_mesh.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace cagewright {
 
@@ -19,17 +20,20 @@ Triangle with_corner(Triangle t, Index from, Index to) {
 
 } // namespace
 
-CageMesh::CageMesh(TriangleView mesh)
-    : positions_(mesh.positions.begin(), mesh.positions.end()),
-      faces_(mesh.triangles.begin(), mesh.triangles.end()), around_(mesh.positions.size()) {
+CageMesh::CageMesh(TriangleView mesh, CageExtent extent)
+    : extent_(extent), positions_(mesh.positions.begin(), mesh.positions.end()),
+      on_plane_(mesh.positions.size(), 0), faces_(mesh.triangles.begin(), mesh.triangles.end()),
+      around_(mesh.positions.size()) {
   face_count_ = faces_.size();
   for (Index f = 0; f < face_end(); ++f) {
     for (const Index v : faces_[f]) {
       around_[v].push_back(f);
     }
   }
-  vertex_count_ = static_cast<std::size_t>(
-      std::count_if(around_.begin(), around_.end(), [](const auto& a) { return !a.empty(); }));
+  for (Index v = 0; v < vertex_end(); ++v) {
+    on_plane_[v] = is_half() && positions_[v].x() == 0 ? 1 : 0;
+    vertex_count_ += has_vertex(v) ? copies(v) : 0;
+  }
 }
 
 std::vector<Index> CageMesh::neighbors(Index v) const {
@@ -38,7 +42,10 @@ std::vector<Index> CageMesh::neighbors(Index v) const {
   for (const Index f : around_[v]) {
     const Triangle& t = faces_[f];
     const int at = t[0] == v ? 0 : t[1] == v ? 1 : 2;
-    result.push_back(t[(at + 1) % 3]); // each neighbour follows v in exactly one face
+    result.push_back(t[(at + 1) % 3]); // each neighbour follows v in exactly one face,
+    if (on_plane(v) && face_left_of(v, t[(at + 2) % 3]) == no_index) {
+      result.push_back(t[(at + 2) % 3]); // but the last of an open fan
+    }
   }
   return result;
 }
@@ -70,17 +77,26 @@ Patch CageMesh::move(Index v, const Vec3& p) const {
     patch.added.push_back(faces_[f]);
   }
   patch.vertex = v;
+  patch.on_plane = on_plane(v);
   patch.position = p;
   return patch;
 }
 
 std::optional<Patch> CageMesh::collapse(Index u, Index v) const {
+  if (on_plane(v) && !on_plane(u)) {
+    std::swap(u, v);
+  }
   const std::vector<Index> near_u = neighbors(u);
   const std::vector<Index> near_v = neighbors(v);
   const auto common = std::count_if(near_u.begin(), near_u.end(), [&](Index w) {
     return std::find(near_v.begin(), near_v.end(), w) != near_v.end();
   });
-  if (common != 2 || face_count_ <= 4 || near_u.size() + near_v.size() < 7) {
+  if (is_half()) {
+    const bool along = on_plane(u) && on_plane(v);
+    if (common != (along ? 1 : 2) || face_count_ <= 3) {
+      return std::nullopt;
+    }
+  } else if (common != 2 || face_count_ <= 4 || near_u.size() + near_v.size() < 7) {
     return std::nullopt;
   }
   Patch patch;
@@ -97,19 +113,58 @@ std::optional<Patch> CageMesh::collapse(Index u, Index v) const {
     }
   }
   patch.vertex = u;
+  patch.on_plane = on_plane(u);
   patch.gone = v;
-  patch.position = (positions_[u] + positions_[v]) / 2;
+  patch.position =
+      on_plane(u) && !on_plane(v) ? positions_[u] : Vec3((positions_[u] + positions_[v]) / 2);
+  if (is_half() && !keeps_halves_apart(patch)) {
+    return std::nullopt;
+  }
   return patch;
+}
+
+// The faces round patch.vertex, once made: none lies in the plane, no edge of two faces joins two
+// vertices of the plane, and no vertex of the whole has fewer than three faces.
+bool CageMesh::keeps_halves_apart(const Patch& patch) const {
+  const Index u = patch.vertex;
+  for (const Triangle& t : patch.added) {
+    if (on_plane(t[0]) && on_plane(t[1]) && on_plane(t[2])) {
+      return false;
+    }
+  }
+  if (patch.added.size() < (on_plane(u) ? 2U : 3U)) {
+    return false;
+  }
+  const auto fits = [&](Index a) {
+    std::size_t kept = 0;
+    for (const Index f : around_[a]) {
+      kept +=
+          std::find(patch.removed.begin(), patch.removed.end(), f) == patch.removed.end() ? 1 : 0;
+    }
+    const auto added = static_cast<std::size_t>(
+        std::count_if(patch.added.begin(), patch.added.end(),
+                      [&](const Triangle& t) { return has_corner(t, a); }));
+    return kept + added >= (on_plane(a) ? 2 : 3) && !(on_plane(u) && on_plane(a) && added != 1);
+  };
+  for (const auto& [a, b] : ring_of(patch)) {
+    if (!fits(a) || !fits(b)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 std::optional<Patch> CageMesh::flip(Index a, Index b) const {
   const Index left = face_left_of(a, b);
   const Index right = face_left_of(b, a);
+  if (left == no_index || right == no_index) {
+    return std::nullopt;
+  }
   const Index c = corner_opposite(left, a, b);
   const Index d = corner_opposite(right, a, b);
   const std::vector<Index> near_c = neighbors(c);
-  if (around_[a].size() <= 3 || around_[b].size() <= 3 ||
-      std::find(near_c.begin(), near_c.end(), d) != near_c.end()) {
+  if (around_[a].size() <= (on_plane(a) ? 2 : 3) || around_[b].size() <= (on_plane(b) ? 2 : 3) ||
+      (on_plane(c) && on_plane(d)) || std::find(near_c.begin(), near_c.end(), d) != near_c.end()) {
     return std::nullopt;
   }
   Patch patch;
@@ -124,7 +179,12 @@ Patch CageMesh::split(Index a, Index b) const {
   Patch patch;
   patch.vertex = vertex_end();
   patch.position = (positions_[a] + positions_[b]) / 2;
-  patch.removed = {left, right};
+  patch.on_plane = is_half() && (left == no_index || right == no_index);
+  for (const Index f : {left, right}) {
+    if (f != no_index) {
+      patch.removed.push_back(f);
+    }
+  }
   for (const Index f : patch.removed) {
     patch.added.push_back(with_corner(faces_[f], a, patch.vertex));
     patch.added.push_back(with_corner(faces_[f], b, patch.vertex));
@@ -146,13 +206,14 @@ std::vector<Index> CageMesh::apply(const Patch& patch) {
   }
   if (patch.vertex == vertex_end()) {
     positions_.push_back(patch.position);
+    on_plane_.push_back(patch.on_plane ? 1 : 0);
     around_.emplace_back();
-    ++vertex_count_;
+    vertex_count_ += copies(patch.vertex);
   } else if (patch.vertex != no_index) {
     positions_[patch.vertex] = patch.position;
   }
   if (patch.gone != no_index) {
-    --vertex_count_;
+    vertex_count_ -= copies(patch.gone);
   }
   std::vector<Index> added;
   for (std::size_t i = 0; i < patch.added.size(); ++i) {
@@ -190,11 +251,29 @@ TriangleMesh CageMesh::compact() const {
   return mesh;
 }
 
+Corners corners_of(const CageMesh& cage, Index face) {
+  const Triangle& t = cage.face(face);
+  return {cage.position(t[0]), cage.position(t[1]), cage.position(t[2])};
+}
+
+Corners corners_across(const CageMesh& cage, const Corners& from, Index a, Index b) {
+  const Index face = cage.face_left_of(a, b);
+  return face == no_index ? mirrored(from) : corners_of(cage, face);
+}
+
 Ring ring_of(const Patch& patch) {
   Ring ring;
   for (const Triangle& t : patch.added) {
     const int at = t[0] == patch.vertex ? 0 : t[1] == patch.vertex ? 1 : 2;
     ring.push_back({t[(at + 1) % 3], t[(at + 2) % 3]});
+  }
+  // A chain starts where no other edge leads to.
+  const auto first = std::find_if(ring.begin(), ring.end(), [&](const auto& edge) {
+    return std::none_of(ring.begin(), ring.end(),
+                        [&](const auto& other) { return other[1] == edge[0]; });
+  });
+  if (first != ring.end()) {
+    std::iter_swap(ring.begin(), first);
   }
   for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
     const auto next = std::find_if(ring.begin() + static_cast<std::ptrdiff_t>(i) + 1, ring.end(),

@@ -137,8 +137,9 @@ void FaceBoxes::find(const Box3& box, std::vector<Index>& found) const {
   }
 }
 
-ModelSurface::ModelSurface(TriangleView model)
-    : tree(model), diagonal(bounding_box(model).diagonal().norm()), parts(connected_parts(model)) {}
+ModelSurface::ModelSurface(TriangleView model, double unit)
+    : tree(model), diagonal(unit > 0 ? unit : bounding_box(model).diagonal().norm()),
+      parts(connected_parts(model)) {}
 
 std::optional<ClosestPoints> Guard::too_near(const CageMesh& cage, const Patch& patch) const {
   for (const Triangle& t : patch.added) {
@@ -196,18 +197,20 @@ bool Guard::loses_a_part(const CageMesh& cage, const Patch& patch) const {
   if (patch.vertex != no_index) {
     box.extend(patch.position);
   }
+  if (cage.is_half()) {
+    box.extend(mirrored(box.max()));
+    box.extend(mirrored(box.min()));
+  }
   for (const ModelSurface::Part& part : model_->parts) {
     if (!box.contains(part.box)) {
       continue;
     }
     double angle = 0; // of the closed surface: old faces, and the new ones inside out
     for (const Index f : patch.removed) {
-      const Triangle& t = cage.face(f);
-      angle +=
-          solid_angle(part.point, {cage.position(t[0]), cage.position(t[1]), cage.position(t[2])});
+      angle += solid_angle(cage, part.point, corners_of(cage, f));
     }
     for (const Triangle& t : patch.added) {
-      angle -= solid_angle(part.point, corners_after(cage, patch, t));
+      angle -= solid_angle(cage, part.point, corners_after(cage, patch, t));
     }
     if (std::abs(angle) > 2 * std::numbers::pi) {
       return true;
@@ -246,6 +249,11 @@ double solid_angle(const Vec3& p, const Corners& t) {
   const double lc = c.norm();
   return 2 * std::atan2(a.dot(b.cross(c)),
                         la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+}
+
+double solid_angle(const CageMesh& cage, const Vec3& p, const Corners& t) {
+  // The mirror image of t is seen from p as t is from the mirror image of p.
+  return solid_angle(p, t) + (cage.is_half() ? solid_angle(mirrored(p), t) : 0);
 }
 
 } // namespace cagewright

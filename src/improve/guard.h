@@ -31,7 +31,8 @@ private:
 
 /// What the improvement knows about the model.
 struct ModelSurface {
-  explicit ModelSurface(TriangleView model);
+  /// \param unit  the length that others are fractions of; 0: the diagonal of the model's box
+  explicit ModelSurface(TriangleView model, double unit = 0);
 
   SurfaceTree tree;
   double diagonal = 0;
@@ -43,6 +44,9 @@ struct ModelSurface {
   };
   std::vector<Part> parts;
 };
+
+/// How far vertices of a half that are not on its plane keep from it, in clearances.
+inline constexpr double plane_gap = 0.5;
 
 /// Decides whether a change leaves the cage valid.
 class Guard {
@@ -82,5 +86,8 @@ bool faces_cross(const Triangle& s, const Corners& at_s, const Triangle& t, cons
 /// Solid angle under which p sees the triangle, signed: the sum over a closed surface is 4 pi
 /// inside and 0 outside.
 double solid_angle(const Vec3& p, const Corners& t);
+
+/// The same for a face of the cage, together with its mirror image if the cage is a half.
+double solid_angle(const CageMesh& cage, const Vec3& p, const Corners& t);
 
 } // namespace cagewright

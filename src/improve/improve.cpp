@@ -21,15 +21,15 @@ double seconds_since(Clock::time_point start) {
 }
 
 // Vertices that a cage like this one may have: a collapse takes a vertex and two faces.
-std::size_t vertex_budget(TriangleView start, const ImproveOptions& options) {
-  std::size_t budget = start.positions.size();
+std::size_t vertex_budget(const CageMesh& start, const ImproveOptions& options) {
+  std::size_t budget = start.vertex_count();
   if (options.vertices > 0) {
     budget = std::min(budget, static_cast<std::size_t>(options.vertices));
   }
-  const std::size_t faces = start.triangles.size();
+  const std::size_t faces = (start.is_half() ? 2 : 1) * start.face_count();
   if (options.faces > 0 && faces > static_cast<std::size_t>(options.faces)) {
     const std::size_t collapses = (faces - static_cast<std::size_t>(options.faces) + 1) / 2;
-    budget = std::min(budget, start.positions.size() - std::min(start.positions.size(), collapses));
+    budget = std::min(budget, start.vertex_count() - std::min(start.vertex_count(), collapses));
   }
   constexpr std::size_t tetrahedron = 4;
   return std::max(budget, tetrahedron);
@@ -41,6 +41,7 @@ ObjectiveWeights weights_for(TriangleView start, const ImproveOptions& options,
   weights.square = options.square;
   weights.shape = options.shape;
   weights.typical_area = surface_area(start) / (2.0 * static_cast<double>(budget));
+  weights.typical_area *= options.extent == CageExtent::half ? 2 : 1;
   return weights;
 }
 
@@ -64,9 +65,10 @@ TriangleMesh with_strays(TriangleView model) {
 class Improvement {
 public:
   Improvement(TriangleView start, TriangleView model, const ImproveOptions& options)
-      : options_(options), budget_(vertex_budget(start, options)), surface_(model),
-        guard_(surface_, options.clearance * surface_.diagonal),
-        objective_(surface_, weights_for(start, options, budget_)), cage_(start),
+      : options_(options), surface_(model, options.diagonal),
+        guard_(surface_, options.clearance * surface_.diagonal), cage_(start, options.extent),
+        budget_(vertex_budget(cage_.mesh, options)),
+        objective_(surface_, weights_for(start, options, budget_)),
         most_valence_(static_cast<std::size_t>(options.most_valence)) {}
 
   Result<Improved> run(const Progress& progress) {
@@ -84,7 +86,8 @@ public:
     }
     result.cage = cage_.mesh.compact();
     result.report.refine_seconds = seconds_since(middle);
-    result.report.objective = value / std::pow(surface_.diagonal, 3);
+    const double sides = cage_.mesh.is_half() ? 2 : 1;
+    result.report.objective = sides * value / std::pow(surface_.diagonal, 3);
     result.report.reached = cage_.mesh.vertex_count() <= budget_;
     if (!result.report.reached) {
       result.report.why_not =
@@ -168,11 +171,11 @@ private:
   }
 
   ImproveOptions options_;
-  std::size_t budget_;
   ModelSurface surface_;
   Guard guard_;
-  Objective objective_;
   WorkingCage cage_;
+  std::size_t budget_;
+  Objective objective_;
   std::size_t most_valence_;
   ShapeLimits limits_;
 };

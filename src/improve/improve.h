@@ -4,6 +4,7 @@
 
 #include "core/progress.h"
 #include "core/result.h"
+#include "improve/cage_extent.h"
 #include "mesh/triangle_mesh.h"
 
 #include <span>
@@ -30,6 +31,11 @@ struct ImproveOptions {
   /// out about half as long (edge length ~ 1 / sqrt(density)); ratios beyond 100 count as 100. The
   /// view must live as long as the call.
   std::span<const double> density = {};
+  /// Whether the start is a whole cage or half of one. If so the result is half of one too; the
+  /// budget and the report are those of the whole.
+  CageExtent extent = CageExtent::whole;
+  /// What lengths are fractions of. 0: the diagonal of the model's box.
+  double diagonal = 0;
 };
 
 struct ImproveReport {
@@ -50,6 +56,9 @@ struct Improved {
 /// The start is closed, manifold, oriented outward, free of self-intersections, encloses the model
 /// and keeps the clearance: so does the result, because no change is made that was not checked. If
 /// the budget cannot be met the smallest cage found is returned, and the report says why.
+///
+/// Of the model for half a cage, what lies at x < 0 should be the mirror image of what lies at
+/// x > 0; it may be left out, apart from triangles that the plane cuts.
 ///
 /// Errors: invalid_option, invalid_cage (the start has no faces), unfit_model (the model has no
 /// vertices), cancelled. The same result on any number of threads.

@@ -47,11 +47,6 @@ double bend(const Corners& s, const Corners& t) {
   return length > 0 ? m.dot(n) / length : -1;
 }
 
-Corners corners_of(const CageMesh& cage, Index face) {
-  const Triangle& t = cage.face(face);
-  return {cage.position(t[0]), cage.position(t[1]), cage.position(t[2])};
-}
-
 double Objective::face(const Corners& t) const {
   double sum = 0;
   for (const Node& node : rule) {
@@ -62,8 +57,12 @@ double Objective::face(const Corners& t) const {
   return triangle_area(t) * sum + shape_weight() * x * x;
 }
 
+Vec3 volume_origin(const CageMesh& cage, const Vec3& near) {
+  return cage.is_half() ? Vec3(0, near.y(), near.z()) : near;
+}
+
 double Objective::volume_change(const CageMesh& cage, const Patch& patch) {
-  const Vec3 origin = cage.position(cage.face(patch.removed[0])[0]);
+  const Vec3 origin = volume_origin(cage, cage.position(cage.face(patch.removed[0])[0]));
   double sum = 0;
   for (const Index f : patch.removed) {
     sum -= six_volumes(corners_of(cage, f), origin);
@@ -97,7 +96,7 @@ std::vector<double> Objective::face_values(const CageMesh& cage) const {
 }
 
 double Objective::total(const CageMesh& cage) const {
-  const Vec3 origin = cage.position(0);
+  const Vec3 origin = volume_origin(cage, cage.position(0));
   double sum = 0;
   for (Index f = 0; f < cage.face_end(); ++f) {
     if (cage.has_face(f)) {

@@ -56,10 +56,10 @@ public:
   /// The parts of all faces, by number; 0 for those that are not there.
   [[nodiscard]] std::vector<double> face_values(const CageMesh& cage) const;
 
-  /// The change of the cage's volume by a patch.
+  /// The change of the cage's volume by a patch; of a half, the change of the half's.
   static double volume_change(const CageMesh& cage, const Patch& patch);
 
-  /// The objective of the cage.
+  /// The objective of the cage; of a half, half that of the whole.
   [[nodiscard]] double total(const CageMesh& cage) const;
 
 private:
@@ -78,7 +78,8 @@ double triangle_area(const Corners& t);
 /// The cosine of the angle between the normals of two faces: -1 when one is folded onto the other.
 double bend(const Corners& s, const Corners& t);
 
-/// The corners of a living face.
-Corners corners_of(const CageMesh& cage, Index face);
+/// A point from which the tetrahedra over all faces add up to the cage's volume: near the one
+/// given, but for a half on its plane, from where what closes it is not seen.
+Vec3 volume_origin(const CageMesh& cage, const Vec3& near);
 
 } // namespace cagewright

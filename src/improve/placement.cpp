@@ -39,6 +39,7 @@ public:
       const Index outer = cage.face_left_of(b, a);
       outer_normal_.push_back(outer != no_index ? unit_normal(corners_of(cage, outer))
                                                 : Vec3(Vec3::Zero()));
+      on_boundary_.push_back(cage.on_plane(a) && cage.on_plane(b));
     }
     for (const Index f : patch.removed) {
       for (const Vec3& p : corners_of(cage, f)) {
@@ -171,8 +172,11 @@ private:
     for (const Vec3& p : old_) {
       most = std::max(most, plane.above(p));
     }
-    const std::array<Vec3, 3> beside = {normals[(i + size() - 1) % size()], outer_normal_[i],
-                                        normals[(i + 1) % size()]};
+    const bool open = patch_.on_plane;
+    const std::array<Vec3, 3> beside = {
+        open && i == 0 ? mirrored(n) : normals[(i + size() - 1) % size()],
+        on_boundary_[i] ? mirrored(n) : outer_normal_[i],
+        open && i + 1 == size() ? mirrored(n) : normals[(i + 1) % size()]};
     std::array<HalfSpace, 3> sides;
     for (int k = 0; k < 3; ++k) {
       const Vec3 edge = t[(k + 1) % 3] - t[k];
@@ -197,16 +201,45 @@ private:
   std::vector<Vec3> from_;
   std::vector<Vec3> to_;
   std::vector<Vec3> outer_normal_; // of the faces across a b
+  std::vector<bool> on_boundary_;  // a b is an edge of one face, on a half's plane
   std::vector<Vec3> old_;          // corners of the removed faces
 };
 
+// The best step from the origin, with half spaces relative to it. With `in_plane` there is no step
+// along x.
+std::optional<Vec3> best_step(Quadratic q, std::vector<HalfSpace> spaces, bool in_plane) {
+  if (in_plane) {
+    q.gradient.x() = 0;
+    q.hessian.row(0).setZero();
+    q.hessian.col(0).setZero();
+    q.hessian(0, 0) = q.hessian(1, 1) + q.hessian(2, 2);
+    std::size_t kept = 0;
+    for (HalfSpace s : spaces) {
+      s.normal.x() = 0;
+      const double length = s.normal.norm();
+      constexpr double parallel = 1e-6;
+      if (length > parallel) {
+        spaces[kept++] = {s.normal / length, s.offset / length};
+      } else if (s.offset < 0) {
+        return std::nullopt;
+      }
+    }
+    spaces.resize(kept);
+  }
+  std::optional<Vec3> step = minimize_in_half_spaces(q.hessian, q.gradient, spaces);
+  if (step && in_plane) {
+    step->x() = 0;
+  }
+  return step;
+}
+
 std::optional<Vec3> solve(const Quadratic& q, const Vec3& origin,
-                          const std::vector<HalfSpace>& spaces) {
+                          const std::vector<HalfSpace>& spaces, bool in_plane) {
   std::vector<HalfSpace> moved = spaces;
   for (HalfSpace& s : moved) {
     s.offset -= s.normal.dot(origin);
   }
-  const std::optional<Vec3> step = minimize_in_half_spaces(q.hessian, q.gradient, moved);
+  const std::optional<Vec3> step = best_step(q, std::move(moved), in_plane);
   return step ? std::optional<Vec3>(origin + *step) : std::nullopt;
 }
 
@@ -216,6 +249,11 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
                                          const CageMesh& cage, Patch patch) {
   const Fan fan(guard, objective, cage, patch);
   std::vector<HalfSpace> spaces;
+  if (cage.is_half() && !patch.on_plane) {
+    const double off_plane = plane_gap * guard.clearance();
+    patch.position.x() = std::max(patch.position.x(), off_plane);
+    spaces.push_back({-Vec3::UnitX(), -off_plane});
+  }
   std::optional<Vec3> best;
   Quadratic quadratic = fan.objective();
   Vec3 origin = patch.position;
@@ -236,7 +274,7 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
         return best;
       }
     }
-    const std::optional<Vec3> next = solve(quadratic, origin, spaces);
+    const std::optional<Vec3> next = solve(quadratic, origin, spaces, patch.on_plane);
     if (!next) {
       return best;
     }
@@ -263,6 +301,15 @@ std::optional<Vec3> place_outside_patch(const CageMesh& cage, const Patch& patch
       area += length / 2;
     }
   }
+  if (cage.is_half() && !patch.on_plane) { // no nearer to the plane than the nearest was
+    double least = origin.x();
+    for (const Index f : patch.removed) {
+      for (const Index v : cage.face(f)) {
+        least = cage.on_plane(v) ? least : std::min(least, cage.position(v).x());
+      }
+    }
+    outside.push_back({-Vec3::UnitX(), origin.x() - least});
+  }
   // The volume decides; the distance from the planes of the old faces keeps the vertex near.
   const double size = std::sqrt(area);
   q.gradient /= size;
@@ -270,7 +317,7 @@ std::optional<Vec3> place_outside_patch(const CageMesh& cage, const Patch& patch
   for (const auto& [a, b] : ring_of(patch)) {
     q.gradient += (cage.position(a) - origin).cross(cage.position(b) - origin) / 6;
   }
-  const std::optional<Vec3> step = minimize_in_half_spaces(q.hessian, q.gradient, outside);
+  const std::optional<Vec3> step = best_step(q, std::move(outside), patch.on_plane);
   return step ? std::optional<Vec3>(origin + *step) : std::nullopt;
 }
 

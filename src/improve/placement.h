@@ -13,7 +13,8 @@ namespace cagewright {
 ///
 /// The faces are pushed off the model by half spaces, one for each point of the model found in the
 /// way, until nothing is in the way (cutting planes). The result was checked for clearance, but not
-/// for crossing the rest of the cage.
+/// for crossing the rest of the cage. In a half a vertex of the plane stays in it, and others keep
+/// off it.
 std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& objective,
                                          const CageMesh& cage, Patch patch);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace cagewright {
@@ -22,8 +23,10 @@ std::vector<std::array<Index, 2>> edges_of(const CageMesh& cage) {
     if (cage.has_face(f)) {
       const Triangle& t = cage.face(f);
       for (int i = 0; i < 3; ++i) {
-        if (t[i] < t[(i + 1) % 3]) {
-          edges.push_back({t[i], t[(i + 1) % 3]});
+        const Index a = t[i];
+        const Index b = t[(i + 1) % 3];
+        if (a < b || cage.face_left_of(b, a) == no_index) {
+          edges.push_back({std::min(a, b), std::max(a, b)});
         }
       }
     }
@@ -60,13 +63,23 @@ std::vector<Index> surroundings(const CageMesh& cage, const Patch& patch) {
   return faces;
 }
 
-// Makes the changes in order, but none in the surroundings of another.
+// Whether the corners opposite to the edge a b of the faces may get one more face each.
+bool leaves_valence(const CageMesh& cage, std::span<const Index> faces, Index a, Index b,
+                    std::size_t most_valence) {
+  return std::all_of(faces.begin(), faces.end(), [&](Index f) {
+    const Index c = cage.corner_opposite(f, a, b);
+    return cage.valence(c) + cage.sides(c) <= most_valence;
+  });
+}
+
+// Makes the changes in order, but none in the surroundings of another, until `most` vertices of the
+// whole cage (or changes that add none) are made.
 std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change>& changes,
                  std::size_t most) {
   std::vector<bool> touched(2 * static_cast<std::size_t>(cage.mesh.face_end()) + 4 * most, false);
   std::size_t made = 0;
   for (const Change& change : changes) {
-    if (made == most) {
+    if (made >= most) {
       break;
     }
     Patch patch = change.patch;
@@ -88,7 +101,9 @@ std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change
     for (const Index f : surroundings(cage.mesh, patch)) {
       touched[f] = true;
     }
+    const std::size_t before = cage.mesh.vertex_count();
     cage.apply(patch);
+    const std::size_t added = std::max<std::size_t>(1, cage.mesh.vertex_count() - before);
     for (const Triangle& t : patch.added) {
       for (const Index v : t) {
         for (const Index f : cage.mesh.around(v)) {
@@ -96,7 +111,7 @@ std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change
         }
       }
     }
-    ++made;
+    made += added;
   }
   return made;
 }
@@ -115,10 +130,8 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
       if (!patch) {
         return change;
       }
-      for (const Index f : patch->removed) {
-        if (mesh.around(mesh.corner_opposite(f, a, b)).size() >= most_valence) {
-          return change;
-        }
+      if (!leaves_valence(mesh, patch->removed, a, b, most_valence)) {
+        return change;
       }
       if (!keeps_shape(mesh, *patch)) {
         return change;
@@ -144,10 +157,8 @@ std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& 
   const std::vector<Change> changes = ranked(mesh, [&](Index a, Index b) {
     std::optional<Change> change;
     Patch patch = mesh.split(a, b);
-    for (const Index f : patch.removed) {
-      if (mesh.around(mesh.corner_opposite(f, a, b)).size() >= most_valence) {
-        return change;
-      }
+    if (!leaves_valence(mesh, patch.removed, a, b, most_valence)) {
+      return change;
     }
     const std::optional<Vec3> position = place_clear_of_model(guard, objective, mesh, patch);
     if (!position) {
@@ -155,7 +166,9 @@ std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& 
     }
     patch.position = *position;
     if (keeps_shape(mesh, patch)) {
-      change = Change{-objective.change(mesh, values, patch), std::move(patch)};
+      // Of a half, for each vertex of the whole that it costs.
+      const double share = mesh.is_half() && patch.on_plane ? 2 : 1;
+      change = Change{-share * objective.change(mesh, values, patch), std::move(patch)};
     }
     return change;
   });

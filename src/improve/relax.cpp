@@ -40,6 +40,7 @@ public:
     for (const Vec3& p : at_) {
       center_ += p / static_cast<double>(at_.size());
     }
+    center_ = volume_origin(cage.mesh, center_);
   }
 
   double run(const RelaxOptions& options, const Progress& progress) {
@@ -130,8 +131,18 @@ private:
     for (Index v = 0; v < living_.size(); ++v) {
       // Directions in which nothing changes are held by a weak spring.
       quadratic.terms.push_back({v, v, (towards_goal ? 2.0 : 50.0) * Mat3::Identity()});
-      for (int k = 0; k < 3; ++k) {
-        constraints.push_back({{v, v, v}, {1, 0, 0}, Vec3::Unit(k), -reach / unit});
+      const bool on_plane = cage_.mesh.on_plane(living_[v]);
+      if (on_plane) { // held as by a wall
+        constexpr double wall = 1e6;
+        quadratic.terms.push_back({v, v, Vec3(wall, 0, 0).asDiagonal()});
+        quadratic.gradient[v].x() = 0;
+      }
+      for (int k = on_plane ? 1 : 0; k < 3; ++k) {
+        const bool near_plane = k == 0 && cage_.mesh.is_half();
+        const double down =
+            near_plane ? std::min(reach, at[living_[v]].x() - plane_gap * guard_.clearance())
+                       : reach;
+        constraints.push_back({{v, v, v}, {1, 0, 0}, Vec3::Unit(k), -down / unit});
         constraints.push_back({{v, v, v}, {1, 0, 0}, -Vec3::Unit(k), -reach / unit});
       }
     }
@@ -139,7 +150,15 @@ private:
     const std::vector<Vec3> step = minimize(quadratic, constraints, slack);
     Positions result = at;
     for (Index v = 0; v < living_.size(); ++v) {
-      result[living_[v]] += unit * step[v];
+      Vec3& p = result[living_[v]];
+      const double off_plane = plane_gap / 2 * guard_.clearance();
+      const double before = p.x();
+      p += unit * step[v];
+      if (cage_.mesh.on_plane(living_[v])) {
+        p.x() = 0;
+      } else if (cage_.mesh.is_half()) {
+        p.x() = std::max(p.x(), std::min(before, off_plane));
+      }
     }
     return result;
   }
@@ -336,9 +355,9 @@ private:
     }
     const Triangle& t = moved.face(f);
     for (int k = 0; k < 3; ++k) {
-      const Index other = moved.face_left_of(t[(k + 1) % 3], t[k]);
-      const double b = bend(now, corners_of(moved, other));
-      if (b < sharpest && b < bend(before, corners_of(cage_.mesh, other))) {
+      const Index p = t[(k + 1) % 3];
+      const double b = bend(now, corners_across(moved, now, p, t[k]));
+      if (b < sharpest && b < bend(before, corners_across(cage_.mesh, before, p, t[k]))) {
         return true;
       }
     }
@@ -351,7 +370,7 @@ private:
     parallel_for(0, parts.size(), 1, [&](std::size_t i) {
       double angle = 0;
       for (const Index f : faces_) {
-        angle += solid_angle(parts[i].point, corners(next, f));
+        angle += solid_angle(cage_.mesh, parts[i].point, corners(next, f));
       }
       lost[i] = static_cast<std::uint8_t>(angle < 2 * std::numbers::pi);
     });

@@ -66,8 +66,10 @@ private:
       if (cage_.mesh.has_face(f)) {
         const Triangle& t = cage_.mesh.face(f);
         for (int i = 0; i < 3; ++i) {
-          if (t[i] < t[(i + 1) % 3]) {
-            edges.push_back({t[i], t[(i + 1) % 3]});
+          const Index a = t[i];
+          const Index b = t[(i + 1) % 3];
+          if (a < b || cage_.mesh.face_left_of(b, a) == no_index) {
+            edges.push_back({std::min(a, b), std::max(a, b)});
           }
         }
       }
@@ -106,17 +108,17 @@ private:
         guard_.loses_a_part(cage_.mesh, *patch)) {
       return std::nullopt;
     }
-    const double cost = options_.placement == Placement::outside_patch
-                            ? quick_cost(*patch)
-                            : objective_.change(cage_.mesh, values_, *patch);
+    double cost = options_.placement == Placement::outside_patch
+                      ? quick_cost(*patch)
+                      : objective_.change(cage_.mesh, values_, *patch);
+    if (cage_.mesh.is_half() && cost > 0) { // for each vertex of the whole that it saves
+      cost *= 2.0 / static_cast<double>(cage_.mesh.copies(patch->gone));
+    }
     return Candidate{cost, edge, {stamps_[edge[0]], stamps_[edge[1]]}, *position};
   }
 
   [[nodiscard]] bool fits_valence(const Patch& patch) const {
-    if (patch.added.size() > options_.most_valence) {
-      return false;
-    }
-    return true;
+    return cage_.mesh.sides(patch.vertex) * patch.added.size() <= options_.most_valence;
   }
 
   // Volume and shape only.
@@ -152,8 +154,7 @@ private:
         break;
       }
       queue_.pop();
-      if (cage_.mesh.has_vertex(u) && cage_.mesh.has_vertex(v) &&
-          cage_.mesh.face_left_of(u, v) != no_index) {
+      if (cage_.mesh.has_vertex(u) && cage_.mesh.has_vertex(v) && cage_.mesh.has_edge(u, v)) {
         stale.push_back(best.edge);
       }
     }
@@ -171,7 +172,8 @@ private:
       return;
     }
     const std::vector<Index> added = cage_.apply(patch);
-    ++stamps_[v];
+    const Index kept = patch.vertex;
+    ++stamps_[patch.gone];
     if (!values_.empty()) {
       parallel_for(0, added.size(), 1, [&](std::size_t i) {
         values_[added[i]] = objective_.face(corners_of(cage_.mesh, added[i]));
@@ -179,9 +181,9 @@ private:
     }
     changed_ = true;
     std::vector<Edge> again;
-    touch(u, again);
-    for (const Index w : cage_.mesh.neighbors(u)) {
-      again.push_back({std::min(u, w), std::max(u, w)});
+    touch(kept, again);
+    for (const Index w : cage_.mesh.neighbors(kept)) {
+      again.push_back({std::min(kept, w), std::max(kept, w)});
       touch(w, again);
     }
     std::sort(again.begin(), again.end());
@@ -194,7 +196,7 @@ private:
     ++stamps_[v];
     for (const Edge& edge : std::exchange(failed_[v], {})) {
       if (cage_.mesh.has_vertex(edge[0]) && cage_.mesh.has_vertex(edge[1]) &&
-          cage_.mesh.face_left_of(edge[0], edge[1]) != no_index) {
+          cage_.mesh.has_edge(edge[0], edge[1])) {
         again.push_back(edge);
       }
     }
@@ -251,8 +253,7 @@ bool keeps_shape(const CageMesh& cage, const Patch& patch, const ShapeLimits& li
     const Corners at = corners_of(cage, f);
     old_defect = std::max(old_defect, shape_defect(at));
     for (int i = 0; i < 3; ++i) {
-      const Index other = cage.face_left_of(t[(i + 1) % 3], t[i]);
-      old_bend = std::min(old_bend, bend(at, corners_of(cage, other)));
+      old_bend = std::min(old_bend, bend(at, corners_across(cage, at, t[(i + 1) % 3], t[i])));
     }
   }
   const double least_bend = std::min(limits.sharpest_bend, old_bend);
@@ -278,6 +279,12 @@ bool keeps_shape(const CageMesh& cage, const Patch& patch, const ShapeLimits& li
         }
       }
       if (!found) {
+        if (cage.on_plane(patch, a) && cage.on_plane(patch, b)) { // the boundary
+          if (bend(at, mirrored(at)) < least_bend) {
+            return false;
+          }
+          continue;
+        }
         const Index outer = cage.face_left_of(a, b);
         if (outer != no_index && bend(at, corners_of(cage, outer)) < least_bend) {
           return false;

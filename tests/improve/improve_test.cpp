@@ -77,6 +77,57 @@ TEST_P(ImproveOf, GivesAValidCageWithinTheBudgetThatKeepsTheClearance) {
 INSTANTIATE_TEST_SUITE_P(Models, ImproveOf, testing::ValuesIn(models()),
                          [](const auto& model) { return model.param.name; });
 
+// The half and its mirror image in x = 0, joined along the plane.
+TriangleMesh whole(const TriangleMesh& half) {
+  TriangleMesh mesh = half;
+  std::vector<Index> image;
+  for (const Vec3& p : half.positions) {
+    image.push_back(p.x() == 0 ? static_cast<Index>(image.size())
+                               : static_cast<Index>(mesh.positions.size()));
+    if (p.x() != 0) {
+      mesh.positions.push_back(mirrored(p));
+    }
+  }
+  for (const Triangle& t : half.triangles) {
+    mesh.triangles.push_back({image[t[0]], image[t[2]], image[t[1]]});
+  }
+  return mesh;
+}
+
+TEST_P(ImproveOf, GivesHalfOfAValidCageRoundTheModelAndItsMirrorImage) {
+  const TriangleMesh& centered = GetParam().mesh;
+  const Vec3 aside = diagonal(centered.positions) * Vec3(0.1, 0, 0);
+  const TriangleMesh model =
+      moved(centered, 1, aside - Vec3(bounding_box(centered.positions).center().x(), 0, 0));
+  TriangleMesh image = model;
+  for (Vec3& p : image.positions) {
+    p = mirrored(p);
+  }
+  const TriangleMesh both = joined(model, image);
+  const double unit = diagonal(model.positions);
+  for (const int vertices : {20, 41}) {
+    const double clearance = 0.01;
+    const Result<Envelope> start =
+        envelope(model, {.resolution = 24, .clearance = clearance, .half = true, .diagonal = unit});
+    ASSERT_TRUE(start) << start.error().message;
+    EXPECT_TRUE(validate_cage(whole(start->mesh), both)->valid());
+    const Result<Improved> made = improve(start->mesh, both,
+                                          {.vertices = vertices,
+                                           .clearance = clearance,
+                                           .extent = CageExtent::half,
+                                           .diagonal = unit});
+    ASSERT_TRUE(made) << made.error().message;
+    const TriangleMesh cage = whole(made->cage);
+    EXPECT_TRUE(made->report.reached) << made->report.why_not;
+    EXPECT_LE(cage.positions.size(), static_cast<std::size_t>(vertices));
+    EXPECT_GE(cage.positions.size(), static_cast<std::size_t>(vertices) - 1);
+    const Result<ValidityReport> report = validate_cage(cage, both);
+    EXPECT_TRUE(report->valid()) << (report->valid() ? "" : name_of(report->violations[0].kind));
+    EXPECT_GE(mesh_distance(TriangleBvh(cage), TriangleBvh(both)).distance,
+              (1 - 1e-9) * clearance * unit);
+  }
+}
+
 TEST(Improve, OfASphereIsNearlyTheBestPolyhedron) {
   const TriangleMesh sphere = make_icosphere(4);
   const Result<Improved> made = improved(sphere, {.vertices = 42, .clearance = 1e-4});
