@@ -107,6 +107,11 @@ typename MeanValueTables<T>::Affine affine(const RealVec3& gradient, const RealV
           static_cast<T>(-gradient.dot(zero_at))};
 }
 
+template <class T> typename MeanValueTables<T>::Vertex make_vertex(const RealVec3& p) {
+  return {static_cast<T>(p.x()), static_cast<T>(p.y()), static_cast<T>(p.z()),
+          static_cast<T>(p.squaredNorm())};
+}
+
 template <class T>
 typename MeanValueTables<T>::Face make_face(const Triangle& t, std::span<const Vec3> positions) {
   const RealVec3 a = positions[t[0]].cast<Real>();
@@ -122,7 +127,95 @@ typename MeanValueTables<T>::Face make_face(const Triangle& t, std::span<const V
   face.kappa = {static_cast<T>((b - a).dot(c - a)), static_cast<T>((a - b).dot(c - b)),
                 static_cast<T>((a - c).dot(b - c))};
   face.area2 = static_cast<T>(std::sqrt(square));
+  const RealVec3 center = (a + b + c) / 3;
+  face.center = make_vertex<T>(center);
+  face.radius2 = static_cast<T>(std::max(
+      {(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
+  face.length2 = {static_cast<T>((c - b).squaredNorm()), static_cast<T>((a - c).squaredNorm()),
+                  static_cast<T>((b - a).squaredNorm())};
   return face;
+}
+
+/// Nodes and weights of Gauss and Legendre on [0, 1].
+struct GaussRule {
+  std::vector<Real> nodes, weights;
+
+  explicit GaussRule(int count) {
+    constexpr Real pi = 3.14159265358979323846264338327950288L;
+    for (int i = 0; i < count; ++i) {
+      Real x = std::cos(pi * (static_cast<Real>(i) + 0.75L) / (static_cast<Real>(count) + 0.5L));
+      Real slope = 1;
+      for (int step = 0; step < 10; ++step) { // Newton's method; four or five steps suffice
+        Real last = 1;
+        Real value = x;
+        for (int k = 2; k <= count; ++k) {
+          last = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * last) / k);
+        }
+        slope = count * (x * value - last) / (x * x - 1);
+        x -= value / slope;
+      }
+      nodes.push_back((1 + x) / 2);
+      weights.push_back(1 / ((1 - x * x) * slope * slope));
+    }
+  }
+};
+
+/// count x count nodes: those of a square, of which one side is drawn together to a corner.
+template <class T> typename MeanValueTables<T>::Rule make_rule(int count, double least_ratio) {
+  const GaussRule gauss(count);
+  typename MeanValueTables<T>::Rule rule;
+  rule.least_ratio2 = static_cast<T>(least_ratio * least_ratio);
+  for (std::size_t i = 0; i < gauss.nodes.size(); ++i) {
+    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
+      const Real u = gauss.nodes[i];
+      const Real a = 1 - u;
+      const Real b = u * (1 - gauss.nodes[k]);
+      const Real c = u * gauss.nodes[k];
+      const Real w = 2 * u * gauss.weights[i] * gauss.weights[k];
+      rule.nodes.push_back({{static_cast<T>(a), static_cast<T>(b), static_cast<T>(c)},
+                            {static_cast<T>(b * c), static_cast<T>(c * a), static_cast<T>(a * b)},
+                            {static_cast<T>(w * a), static_cast<T>(w * b), static_cast<T>(w * c)}});
+    }
+  }
+  return rule;
+}
+
+/// The distances were measured: in each case the worst of 90 triangles, slivers among them, errs by
+/// 1e-16 (double) or 3e-8 (float) at most.
+template <class T> std::vector<typename MeanValueTables<T>::Rule> make_rules();
+
+template <> std::vector<MeanValueTables<double>::Rule> make_rules<double>() {
+  return {make_rule<double>(4, 1000), make_rule<double>(5, 100), make_rule<double>(6, 35),
+          make_rule<double>(7, 16),   make_rule<double>(8, 10),  make_rule<double>(10, 6),
+          make_rule<double>(12, 4),   make_rule<double>(13, 3)};
+}
+template <> std::vector<MeanValueTables<float>::Rule> make_rules<float>() {
+  return {make_rule<float>(3, 50), make_rule<float>(4, 15), make_rule<float>(5, 7),
+          make_rule<float>(7, 3.5)};
+}
+
+/// What the kernel needs to know of the cage as a whole for points far outside.
+template <class T> void prepare_outside(MeanValueTables<T>& tables) {
+  tables.rules = make_rules<T>();
+  Real largest2 = 0;
+  for (const auto& vertex : tables.vertices) {
+    largest2 = std::max<Real>(largest2, vertex.square);
+  }
+  tables.outside2 = static_cast<T>(largest2);
+  std::array<Real, 4> flux{};
+  Real area = 0;
+  for (const auto& face : tables.faces) {
+    const Real area2 = face.area2;
+    for (std::size_t i = 0; i < 4; ++i) {
+      flux[i] += face.delta[i] * area2 * area2 / 2;
+    }
+    area += area2 / 2;
+  }
+  for (std::size_t i = 0; i < 3; ++i) { // no flux but for the volume through a closed surface
+    flux[i] = std::abs(flux[i]) < 1e-13L * area ? 0 : flux[i];
+  }
+  std::ranges::transform(flux, tables.flux.begin(), [](Real x) { return static_cast<T>(x); });
+  tables.least_flux = static_cast<T>(1e-11L * area * std::sqrt(largest2));
 }
 
 template <class T>
@@ -141,8 +234,8 @@ MeanValueTables<T> make_tables(std::span<const Vec3> positions,
                                std::span<const Triangle> triangles) {
   MeanValueTables<T> tables;
   for (const Vec3& p : positions) {
-    tables.vertices.push_back(
-        {static_cast<T>(p.x()), static_cast<T>(p.y()), static_cast<T>(p.z())});
+    const Eigen::Matrix<T, 3, 1> stored = p.cast<T>();
+    tables.vertices.push_back(make_vertex<T>(stored.template cast<Real>()));
   }
   // The rounded corners are the cage: planes must be those of the corners as they are stored.
   std::vector<Vec3> rounded;
@@ -165,6 +258,7 @@ MeanValueTables<T> make_tables(std::span<const Vec3> positions,
     tables.faces[uses[i].triangle].edges[uses[i].opposite] =
         static_cast<Index>(tables.edges.size() - 1);
   }
+  prepare_outside(tables);
   return tables;
 }
 

@@ -299,32 +299,131 @@ private:
   }
 
   void add_faces() {
+    const auto outside = hn::Gt(hn::MulAdd(px_, px_, hn::MulAdd(py_, py_, hn::Mul(pz_, pz_))),
+                                constant(tables_.outside2));
     // Far outside the cage the same relative height is meant.
     const V reach = hn::Mul(
         constant(Limits<T>::near_plane),
         hn::Max(constant(T(1)), hn::Add(hn::Abs(px_), hn::Add(hn::Abs(py_), hn::Abs(pz_)))));
+    if (HWY_UNLIKELY(!hn::AllFalse(d_, outside))) {
+      add_faces_outside(outside, reach);
+      return;
+    }
     for (std::size_t i = 0; i < tables_.faces.size(); ++i) {
       const auto& face = tables_.faces[i];
-      const V la = apply(face.lambda_0);
-      const V lb = apply(face.lambda_1);
-      const V lc = hn::Sub(hn::Sub(constant(T(1)), la), lb);
-      const V delta = apply(face.delta);
-      const V ga = hn::Load(d_, g_ + face.edges[0] * lanes);
-      const V gb = hn::Load(d_, g_ + face.edges[1] * lanes);
-      const V gc = hn::Load(d_, g_ + face.edges[2] * lanes);
-      const V s = hn::MulAdd(ga, la, hn::MulAdd(gb, lb, hn::Mul(gc, lc)));
-      const auto near = hn::Lt(hn::Mul(hn::Abs(delta), constant(face.area2)), reach);
-      const V quotient = HWY_UNLIKELY(!hn::AllFalse(d_, near))
-                             ? careful_quotient(i, {la, lb, lc}, {ga, gb, gc}, delta, s)
-                             : divide(d_, s, delta);
-
-      const V ka = hn::Mul(hn::Sub(gb, gc), constant(face.kappa[0]));
-      const V kb = hn::Mul(hn::Sub(gc, ga), constant(face.kappa[1]));
-      const V kc = hn::Mul(hn::Sub(ga, gb), constant(face.kappa[2]));
-      add_weight(face.vertices[0], la, quotient, delta, hn::Sub(kc, kb));
-      add_weight(face.vertices[1], lb, quotient, delta, hn::Sub(ka, kc));
-      add_weight(face.vertices[2], lc, quotient, delta, hn::Sub(kb, ka));
+      const FaceTerms f = terms_of(i, reach);
+      add_weight(face.vertices[0], f.lambda[0], f.quotient, f.delta, f.rest[0]);
+      add_weight(face.vertices[1], f.lambda[1], f.quotient, f.delta, f.rest[1]);
+      add_weight(face.vertices[2], f.lambda[2], f.quotient, f.delta, f.rest[2]);
     }
+  }
+
+  /// A face's share of the weight of its corner i: lambda[i] * quotient + delta * rest[i].
+  struct FaceTerms {
+    V lambda[3];
+    V quotient;
+    V delta;
+    V rest[3];
+  };
+
+  HWY_INLINE FaceTerms terms_of(std::size_t index, V reach) {
+    const auto& face = tables_.faces[index];
+    const V la = apply(face.lambda_0);
+    const V lb = apply(face.lambda_1);
+    const V lc = hn::Sub(hn::Sub(constant(T(1)), la), lb);
+    const V delta = apply(face.delta);
+    const V ga = hn::Load(d_, g_ + face.edges[0] * lanes);
+    const V gb = hn::Load(d_, g_ + face.edges[1] * lanes);
+    const V gc = hn::Load(d_, g_ + face.edges[2] * lanes);
+    const V s = hn::MulAdd(ga, la, hn::MulAdd(gb, lb, hn::Mul(gc, lc)));
+    const auto near = hn::Lt(hn::Mul(hn::Abs(delta), constant(face.area2)), reach);
+    const V quotient = HWY_UNLIKELY(!hn::AllFalse(d_, near))
+                           ? careful_quotient(index, {la, lb, lc}, {ga, gb, gc}, delta, s)
+                           : divide(d_, s, delta);
+    const V ka = hn::Mul(hn::Sub(gb, gc), constant(face.kappa[0]));
+    const V kb = hn::Mul(hn::Sub(gc, ga), constant(face.kappa[1]));
+    const V kc = hn::Mul(hn::Sub(ga, gb), constant(face.kappa[2]));
+    return {{la, lb, lc}, quotient, delta, {hn::Sub(kc, kb), hn::Sub(ka, kc), hn::Sub(kb, ka)}};
+  }
+
+  /// The same where some points are outside the sphere round the cage. Their weights are all taken
+  /// times R^4, R the distance from the origin.
+  template <class M> HWY_NOINLINE void add_faces_outside(M outside, V reach) {
+    const V square = hn::IfThenElse(
+        outside, hn::MulAdd(px_, px_, hn::MulAdd(py_, py_, hn::Mul(pz_, pz_))), constant(T(1)));
+    const V scale = hn::Mul(square, square);
+    auto all_far = outside;
+    V far_sum = apply(tables_.flux);
+    for (std::size_t i = 0; i < tables_.faces.size(); ++i) {
+      const auto& face = tables_.faces[i];
+      const V x = hn::Sub(constant(face.center.x), px_);
+      const V y = hn::Sub(constant(face.center.y), py_);
+      const V z = hn::Sub(constant(face.center.z), pz_);
+      const V distance2 = hn::IfThenElse(outside, hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))),
+                                         constant(T(0)));
+      const V ratio2 = hn::Mul(distance2, constant(1 / face.radius2));
+      const auto far = hn::Ge(ratio2, constant(tables_.rules.back().least_ratio2));
+      all_far = hn::And(all_far, far);
+      if (!hn::AllTrue(d_, far)) {
+        const FaceTerms f = terms_of(i, reach);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const V weight = hn::MulAdd(f.lambda[k], f.quotient, hn::Mul(f.delta, f.rest[k]));
+          add_to(face.vertices[k], hn::IfThenZeroElse(far, hn::Mul(weight, scale)));
+        }
+      }
+      if (!hn::AllFalse(d_, far)) {
+        const T least = hn::GetLane(
+            hn::MinOfLanes(d_, hn::IfThenElse(far, ratio2, constant(hwy::HighestValue<T>()))));
+        far_sum = hn::Add(far_sum, add_face_from_afar(i, square, far, least));
+      }
+    }
+    far_sum_ = far_sum;
+    from_afar_ = hn::IfThenElseZero(all_far, constant(T(1)));
+  }
+
+  /// From afar nothing of the closed form is left but round-off, while the integral itself,
+  ///     w_a = h int lambda_a / r^4 dA,
+  /// is smooth. Of R^4 / r^4 = 1 + t (2 R^2 - t) / r^4, with t = R^2 - r^2, the 1 is integrated
+  /// exactly: summed over the cage it leaves only the volume, and the rest falls as fast as that.
+  /// \returns what the face adds to the sum of all weights besides the 1.
+  template <class M> V add_face_from_afar(std::size_t index, V square, M far, T least_ratio2) {
+    const auto& face = tables_.faces[index];
+    std::size_t choice = 0;
+    while (tables_.rules[choice].least_ratio2 > least_ratio2) {
+      ++choice;
+    }
+    V t[3]; // at the corners
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& v = tables_.vertices[face.vertices[k]];
+      t[k] = hn::MulAdd(constant(2 * v.x), px_,
+                        hn::MulAdd(constant(2 * v.y), py_,
+                                   hn::MulSub(constant(2 * v.z), pz_, constant(v.square))));
+    }
+    V sum[3] = {hn::Zero(d_), hn::Zero(d_), hn::Zero(d_)};
+    for (const auto& node : tables_.rules[choice].nodes) {
+      const T bend = node.products[0] * face.length2[0] + node.products[1] * face.length2[1] +
+                     node.products[2] * face.length2[2];
+      const V here =
+          hn::MulAdd(constant(node.lambda[0]), t[0],
+                     hn::MulAdd(constant(node.lambda[1]), t[1],
+                                hn::MulAdd(constant(node.lambda[2]), t[2], constant(bend))));
+      const V r2 = hn::Sub(square, here);
+      const V value = divide(d_, hn::Mul(here, hn::Add(square, r2)), hn::Mul(r2, r2));
+      for (std::size_t k = 0; k < 3; ++k) {
+        sum[k] = hn::MulAdd(constant(node.weighted[k]), value, sum[k]);
+      }
+    }
+    const V flux = hn::IfThenElseZero(
+        far, hn::Mul(apply(face.delta), constant(T(0.5) * face.area2 * face.area2)));
+    for (std::size_t k = 0; k < 3; ++k) {
+      add_to(face.vertices[k], hn::Mul(flux, hn::Add(sum[k], constant(T(1) / 3))));
+    }
+    return hn::Mul(flux, hn::Add(sum[0], hn::Add(sum[1], sum[2])));
+  }
+
+  void add_to(Index vertex, V value) {
+    T* weight = weight_ + vertex * lanes;
+    hn::Store(hn::Add(hn::Load(d_, weight), value), d_, weight);
   }
 
   void add_weight(Index vertex, V lambda, V quotient, V delta, V k) {
@@ -479,9 +578,13 @@ private:
       sum = hn::Add(sum, weight);
       size = hn::Add(size, hn::Abs(weight));
     }
+    const auto from_afar = hn::Gt(from_afar_, hn::Zero(d_));
+    sum = hn::IfThenElse(from_afar, far_sum_, sum);
+    const V least = hn::IfThenElse(from_afar, constant(tables_.least_flux),
+                                   hn::Mul(size, constant(Limits<T>::defined)));
     // Only around a broken cage, or for a point that is no number, do the weights not add up.
-    const auto defined = hn::And(hn::Gt(hn::Abs(sum), hn::Mul(size, constant(Limits<T>::defined))),
-                                 hn::Lt(size, constant(hwy::HighestValue<T>())));
+    const auto defined =
+        hn::And(hn::Gt(hn::Abs(sum), least), hn::Lt(size, constant(hwy::HighestValue<T>())));
     const V inverse = hn::Div(constant(T(1)), hn::IfThenElse(defined, sum, constant(T(1))));
     for (std::size_t i = 0; i < cage_.cage_vertices; ++i) {
       const V weight = hn::Mul(hn::Load(d_, weight_ + i * lanes), inverse);
@@ -508,6 +611,8 @@ private:
   const MeanValueSolver::Tables& cage_;
   const Tables& tables_;
   V px_, py_, pz_;
+  V far_sum_ = hn::Zero(d_);   // of the weights times R^4, for points from which every face is far
+  V from_afar_ = hn::Zero(d_); // 1 for these points
   T* weight_;
   T* distance_;
   T* inverse_distance_;

@@ -15,6 +15,7 @@ namespace cagewright {
 template <class T> struct MeanValueTables {
   struct Vertex {
     T x, y, z;
+    T square; ///< of the distance to the origin
   };
   struct Edge {
     Index from, to;
@@ -30,7 +31,27 @@ template <class T> struct MeanValueTables {
     Affine delta;               ///< signed height over twice the area, positive behind the face
     std::array<T, 3> kappa;     ///< kappa[i]: scalar product of the two edge vectors at vertex i
     T area2;                    ///< twice the area
+    Vertex center;              ///< the mean of the corners
+    T radius2;                  ///< square of the greatest distance of a corner from it
+    std::array<T, 3> length2;   ///< length2[i]: square of the edge opposite vertices[i]
   };
+  /// A rule for integrating over a triangle.
+  struct Rule {
+    struct Node {
+      std::array<T, 3> lambda;   ///< barycentric coordinates
+      std::array<T, 3> products; ///< products[i]: of the two lambdas besides i
+      std::array<T, 3> weighted; ///< lambda times the node's weight; all weights sum to 1
+    };
+    T least_ratio2 = 0; ///< distance over radius, squared, from which on it is exact to rounding
+    std::vector<Node> nodes;
+  };
+
+  /// Ordered from the fewest nodes, for the most distant points, to the most.
+  std::vector<Rule> rules;
+  /// Sum over the faces of signed height times area: three times the volume, for closed cages.
+  Affine flux;
+  T outside2 = 0;   ///< square of the distance from the origin beyond which `rules` are used
+  T least_flux = 0; ///< a sum of weights far away that is smaller is noise
 
   std::vector<Vertex> vertices;
   std::vector<Edge> edges;

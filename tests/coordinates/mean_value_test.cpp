@@ -151,6 +151,27 @@ TEST_P(MeanValueIn, AgreesWithTheDefinitionInsideAndOutside) {
   }
 }
 
+TEST_P(MeanValueIn, AgreesWithTheDefinitionFarOutside) {
+  const TriangleMesh& cage = GetParam().mesh;
+  const MeanValueSolver solver = solver_for(cage);
+  const double unit = diagonal(cage.positions);
+  const Vec3 center = bounding_box(cage).center();
+  Random random(21);
+  // Small steps at first: there the formulas meet.
+  for (double distance = 0.4; distance < 2e6; distance *= distance < 8 ? 1.2 : 4) {
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 point = center + distance * unit * test::random_direction(random);
+      const std::vector<double> weights = weights_of(solver, point);
+      if (distance < 2e3) { // beyond, 113 bits do not suffice for the reference
+        EXPECT_LT(difference(weights, test::reference_weights(cage, point)), 1e-12)
+            << distance << " diagonals away: " << point.transpose();
+      }
+      EXPECT_LT((reproduced(weights, cage.positions) - point).norm(), 1e-13 * (1 + distance) * unit)
+          << distance;
+    }
+  }
+}
+
 TEST_P(MeanValueIn, DoesNotDependOnUnitOrOrigin) {
   const TriangleMesh& cage = GetParam().mesh;
   const MeanValueSolver solver = solver_for(cage);
