@@ -340,6 +340,7 @@ Result<GltfDocument> GltfDocument::open(const Source& source,
   document.source_ = source;
   document.folder_ = std::move(folder);
   document.json_ = *std::move(json);
+  document.json_text_ = container->json;
   document.binary_chunk_ = container->binary;
   const Json& buffers = member(document.json_, "buffers");
   document.loaded_.resize(buffers.is_array() ? buffers.size() : 0);
@@ -354,7 +355,7 @@ Result<std::string_view> GltfDocument::buffer(std::size_t index) {
   }
   const std::size_t length = to_size(member(description, "byteLength")).value_or(0);
   std::string_view bytes = binary_chunk_;
-  if (index != 0 || member(description, "uri").is_string()) {
+  if (!is_binary_chunk(index) || loaded_[index]) {
     if (!loaded_[index]) {
       Result<std::string> loaded = load_buffer(description, where);
       if (!loaded) {
@@ -369,6 +370,59 @@ Result<std::string_view> GltfDocument::buffer(std::size_t index) {
                          std::to_string(bytes.size()) + std::string(export_again));
   }
   return bytes.substr(0, length);
+}
+
+bool GltfDocument::is_binary_chunk(std::size_t buffer) const {
+  return buffer == 0 && !member(element(member(json_, "buffers"), buffer), "uri").is_string();
+}
+
+std::optional<std::filesystem::path> GltfDocument::file_of_buffer(std::size_t buffer) const {
+  const std::string uri = to_text(member(element(member(json_, "buffers"), buffer), "uri"));
+  if (uri.empty() || uri.starts_with("data:") || !folder_) {
+    return std::nullopt;
+  }
+  return *folder_ / decode_percent(uri);
+}
+
+std::string& GltfDocument::changeable_buffer(std::size_t index) {
+  if (!loaded_[index]) {
+    loaded_[index] = std::string(binary_chunk_);
+  }
+  return *loaded_[index];
+}
+
+Result<GltfDocument::Place> GltfDocument::place_of(std::size_t index, std::size_t components) {
+  const std::string where = numbered("accessor", index);
+  const Json& accessor = element(member(json_, "accessors"), index);
+  const Result<Layout> layout = layout_of(accessor, components, where);
+  if (!layout) {
+    return layout.error();
+  }
+  const auto unsupported = [&](const std::string& what) {
+    return source_.error(where + what +
+                             ", which cannot be changed in place; export the model "
+                             "without compression, or write OBJ",
+                         ErrorCode::unsupported);
+  };
+  if (layout->type != Component::float32) {
+    return unsupported(" holds positions or normals as integers");
+  }
+  if (!member(accessor, "sparse").is_null()) {
+    return unsupported(" has sparse values");
+  }
+  const Json& view_index = member(accessor, "bufferView");
+  if (view_index.is_null()) {
+    return unsupported(" stores no values");
+  }
+  const std::size_t offset = to_size(member(accessor, "byteOffset")).value_or(0);
+  const Result<Slice> from = slice(view_index, offset, *layout, true, where);
+  if (!from) {
+    return from.error();
+  }
+  const Json& view = element(member(json_, "bufferViews"), to_size(view_index).value_or(0));
+  return Place{to_size(member(view, "buffer")).value_or(0),
+               to_size(member(view, "byteOffset")).value_or(0) + offset, from->stride,
+               layout->count};
 }
 
 Result<std::string> GltfDocument::load_buffer(const Json& buffer, const std::string& where) {

@@ -52,6 +52,33 @@ public:
   /// Reads an accessor of unsigned integers.
   Result<std::vector<std::uint32_t>> read_indices(std::size_t accessor);
 
+  /// Where the floats of an accessor lie.
+  struct Place {
+    std::size_t buffer = 0;
+    std::size_t begin = 0;  ///< of the first element, in the buffer
+    std::size_t stride = 0; ///< from one element to the next
+    std::size_t count = 0;
+  };
+
+  /// The place of an accessor of floats whose values can be changed where they are. Errors: those
+  /// of read_vectors(); unsupported (integers, sparse or not stored).
+  Result<Place> place_of(std::size_t accessor, std::size_t components);
+
+  /// A buffer that place_of() named, to be changed; later reads see the changes.
+  std::string& changeable_buffer(std::size_t index);
+
+  /// The JSON as it stands in the file, and the binary chunk of a GLB file.
+  [[nodiscard]] std::string_view json_text() const { return json_text_; }
+  [[nodiscard]] std::string_view binary_chunk() const { return binary_chunk_; }
+  [[nodiscard]] const std::optional<std::filesystem::path>& folder() const { return folder_; }
+
+  /// Whether a buffer is the binary chunk; else it has a URI.
+  [[nodiscard]] bool is_binary_chunk(std::size_t buffer) const;
+  /// The file of a buffer that is not in this one; none for the others.
+  [[nodiscard]] std::optional<std::filesystem::path> file_of_buffer(std::size_t buffer) const;
+  /// The bytes of a buffer. Errors: malformed, unsupported, cannot_open.
+  Result<std::string_view> bytes_of_buffer(std::size_t index) { return buffer(index); }
+
 private:
   struct Layout; // where the elements of an accessor lie
   struct Slice {
@@ -71,8 +98,10 @@ private:
   Source source_;
   std::optional<std::filesystem::path> folder_;
   Json json_;
+  std::string_view json_text_;
   std::string_view binary_chunk_;
-  std::vector<std::optional<std::string>> loaded_; // buffers that are not the binary chunk
+  std::vector<std::optional<std::string>>
+      loaded_; // buffers that are not the unchanged binary chunk
 };
 
 } // namespace cagewright

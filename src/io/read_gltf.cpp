@@ -1,4 +1,4 @@
-#include "io/gltf_document.h"
+#include "io/gltf_scene.h"
 #include "io/readers.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ public:
   explicit GltfReader(GltfDocument& document)
       : document_(document), source_(document.source()), nodes_(member(document.json(), "nodes")) {}
 
-  Result<PolygonMesh> read() {
+  Result<GltfScene> read() {
     const Result<std::vector<std::size_t>> roots = find_roots();
     if (!roots) {
       return roots.error();
@@ -38,7 +38,7 @@ public:
     if (!mesh_.colors.empty()) {
       mesh_.colors.resize(mesh_.positions.size(), {1, 1, 1, 1});
     }
-    return std::move(mesh_);
+    return GltfScene{std::move(mesh_), std::move(placements_), std::move(shown_)};
   }
 
 private:
@@ -200,6 +200,7 @@ private:
     }
     const std::size_t faces_before = mesh_.face_count();
     bases_.clear();
+    node_ = node;
     const Json& primitives = member(meshes[*index], "primitives");
     for (std::size_t p = 0; primitives.is_array() && p < primitives.size(); ++p) {
       const std::string where =
@@ -247,6 +248,7 @@ private:
     if (!vertices) {
       return vertices.error();
     }
+    const std::size_t first_corner = mesh_.corners().size();
     std::vector<std::uint32_t> indices;
     if (member(primitive, "indices").is_null()) {
       indices.resize(vertices->count);
@@ -275,6 +277,9 @@ private:
     // A transform that mirrors turns the triangles inside out (glTF 2.0, 3.7.4).
     add_triangles(indices, static_cast<Mode>(mode), vertices->base,
                   transform.linear().determinant() < 0);
+    shown_.push_back({vertices->placement, to_size(member(attributes, "NORMAL")),
+                      to_size(member(attributes, "TANGENT")), first_corner,
+                      mesh_.corners().size()});
     return success();
   }
 
@@ -295,6 +300,7 @@ private:
   struct Vertices {
     Index base = 0;
     std::size_t count = 0;
+    std::size_t placement = 0;
   };
 
   // Primitives of one mesh often share their vertices and differ in their indices.
@@ -307,7 +313,8 @@ private:
     if (!values) {
       return values.error();
     }
-    const Vertices vertices{static_cast<Index>(mesh_.positions.size()), values->size() / 3};
+    const Vertices vertices{static_cast<Index>(mesh_.positions.size()), values->size() / 3,
+                            placements_.size()};
     if (mesh_.positions.size() + vertices.count > most_corners(source_)) {
       return source_.error("shows more than 67 million vertices; simplify the model",
                            ErrorCode::too_large);
@@ -325,6 +332,7 @@ private:
       return status.error();
     }
     bases_.emplace(accessor, vertices);
+    placements_.push_back({node_, accessor, vertices.base, vertices.count, transform});
     return vertices;
   }
 
@@ -381,10 +389,17 @@ private:
   const Source& source_;
   const Json& nodes_;
   PolygonMesh mesh_;
+  std::vector<GltfPlacement> placements_;
+  std::vector<GltfShown> shown_;
+  std::size_t node_ = 0;                  // under way
   std::map<std::size_t, Vertices> bases_; // of the mesh under way, by accessor
 };
 
 } // namespace
+
+Result<GltfScene> read_gltf_scene(GltfDocument& document) {
+  return GltfReader(document).read();
+}
 
 Result<PolygonMesh> read_gltf(const Source& source,
                               const std::optional<std::filesystem::path>& folder) {
@@ -392,7 +407,8 @@ Result<PolygonMesh> read_gltf(const Source& source,
   if (!document) {
     return document.error();
   }
-  return GltfReader(*document).read();
+  Result<GltfScene> scene = read_gltf_scene(*document);
+  return scene ? Result<PolygonMesh>(std::move(scene->mesh)) : scene.error();
 }
 
 } // namespace cagewright

@@ -9,6 +9,7 @@
 #include "io/read_file.h"
 #include "io/read_mesh.h"
 #include "io/readers.h"
+#include "io/rewrite_gltf.h"
 #include "io/text_cursor.h"
 
 #include <algorithm>
@@ -285,8 +286,8 @@ Result<std::string> rewrite_as(MeshFormat format, const Source& source, const Ge
   case MeshFormat::gltf:
     break;
   }
-  return source.error("glTF cannot be rewritten with other positions; convert the model to OBJ",
-                      ErrorCode::unsupported);
+  return source.error("is glTF, which rewrite_gltf() writes",
+                      ErrorCode::unsupported); // not reached
 }
 
 // What the file is, by the rule of read_mesh(), which has accepted it.
@@ -321,7 +322,9 @@ Result<FileNormals> read_normals(const std::filesystem::path& path) {
   }
   const std::string name = path.string();
   const Source source{name, file->view()};
-  return normals_in(source, format_of(source, path));
+  const MeshFormat format = format_of(source, path);
+  return format == MeshFormat::gltf ? read_gltf_normals(source, path.parent_path())
+                                    : normals_in(source, format);
 }
 
 Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
@@ -333,8 +336,13 @@ Status rewrite_positions(const std::filesystem::path& original, std::span<const 
   const std::string name = original.string();
   const Source source{name, file->view()};
   const MeshFormat format = format_of(source, original);
-  if (format == MeshFormat::gltf) { // its positions depend on the scene: there is no place for them
-    return rewrite_as(format, source, {}).error();
+  if (!all_finite(positions) || !all_finite(normals)) {
+    return Error{ErrorCode::cannot_write, one_line(out.string()) +
+                                              ": a position or normal is not finite; check where "
+                                              "it was computed"};
+  }
+  if (format == MeshFormat::gltf) {
+    return rewrite_gltf(source, original.parent_path(), positions, normals, out);
   }
   const Result<PolygonMesh> mesh = read_mesh(source.bytes, format, name);
   if (!mesh) {
@@ -353,11 +361,6 @@ Status rewrite_positions(const std::filesystem::path& original, std::span<const 
     if (!same) {
       return same;
     }
-  }
-  if (!all_finite(positions) || !all_finite(normals)) {
-    return Error{ErrorCode::cannot_write, one_line(out.string()) +
-                                              ": a position or normal is not finite; check where "
-                                              "it was computed"};
   }
   const Result<std::string> bytes = rewrite_as(format, source, {positions, normals});
   return bytes ? write_file_atomically(out, *bytes) : bytes.error();

@@ -23,7 +23,8 @@ struct FileNormals {
 };
 
 /// Reads the normals of an OBJ file (a corner's own, so that hard edges are where two corners of
-/// a vertex differ). For other formats there are none.
+/// a vertex differ) or of a glTF file (unit vectors, as the scene shows them). For other formats
+/// there are none.
 ///
 /// Errors: those of read_mesh().
 Result<FileNormals> read_normals(const std::filesystem::path& path);
@@ -31,15 +32,24 @@ Result<FileNormals> read_normals(const std::filesystem::path& path);
 /// Writes the file `original` again as `out`, with other positions. Every other byte stays: order,
 /// polygons, texture coordinates, groups, materials, comments, colours, elements of others.
 ///
-/// OBJ, OFF, STL and PLY. Text gets the shortest digits that read back as the same double; binary
-/// files and the properties of PLY keep their types, and so may round to float. Facet normals of
-/// STL are computed anew.
+/// In glTF the values of the accessors change where they are, with their bounds in the JSON, and
+/// tangents turn with the normals. Nodes, skins (bind pose and joints), and morph targets stay as
+/// they are: positions are those that read_mesh() gives, under the nodes' transforms, taken back
+/// into each node's frame. GLB stays GLB; a buffer in a file of its own is written beside `out`,
+/// under its name with .bin, never over a file that the original refers to, and the URI changed;
+/// the one in the original stays. Links to images stay as they are.
+///
+/// OBJ, OFF, STL, PLY and glTF. Text gets the shortest digits that read back as the same double;
+/// binary files and the properties of PLY keep their types, and so may round to float. Facet
+/// normals of STL are computed anew.
 ///
 /// \param positions  as many as read_mesh() gives for the file, in its order
 /// \param normals    as many as read_normals() gives, or none: then the file's stay
 ///
 /// Errors: those of read_mesh(); mismatch (other numbers of positions or normals), unsupported
-/// (glTF, or integer coordinates in PLY), cannot_write (also for a position that is not finite).
+/// (integer coordinates in PLY; in glTF integer or sparse accessors, a mesh that several nodes show
+/// and that would need several shapes, a node that flattens its mesh), cannot_write (also for a
+/// position that is not finite).
 Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
                          std::span<const Vec3> normals, const std::filesystem::path& out);
 

@@ -140,14 +140,6 @@ TEST(RewritePositions, RefusesWhatDoesNotBelongTogether) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.obj"});
 }
 
-TEST(RewritePositions, SaysThatItDoesNotRewriteGltf) {
-  const TemporaryFolder folder;
-  const auto original = folder.add("a.glb", "glTF");
-  const Status status = rewrite_positions(original, moved, {}, folder / "out.glb");
-  ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, ErrorCode::unsupported);
-}
-
 TEST(ReadNormals, TellsWhichCornerUsesWhich) {
   const TemporaryFolder folder;
   const Result<FileNormals> normals = read_normals(folder.add("a.obj", obj));

@@ -1,0 +1,24 @@
+/// \file
+/// A glTF file with other positions, and all else as it was.
+#pragma once
+
+#include "core/result.h"
+#include "io/rewrite_positions.h"
+#include "io/source.h"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+
+namespace cagewright {
+
+/// The normals of all vertices as the scene shows them, of unit length.
+Result<FileNormals> read_gltf_normals(const Source& source,
+                                      const std::optional<std::filesystem::path>& folder);
+
+/// See rewrite_positions().
+Status rewrite_gltf(const Source& source, const std::filesystem::path& folder,
+                    std::span<const Vec3> positions, std::span<const Vec3> normals,
+                    const std::filesystem::path& out);
+
+} // namespace cagewright
