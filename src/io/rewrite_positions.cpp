@@ -81,8 +81,18 @@ std::string rewrite_obj(const Source& source, const Geometry& geometry) {
   return std::move(copy).take();
 }
 
-std::string rewrite_off_text(const Source& source, TextCursor cursor, const Geometry& geometry) {
-  Copy copy(source);
+bool has_three_numbers(TextCursor cursor) {
+  for (int i = 0; i < 3; ++i) {
+    cursor.skip_blanks();
+    if (!cursor.any_number()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// From behind the first word of an OFF file to the first vertex.
+void skip_off_counts(TextCursor& cursor) {
   for (int count = 0; count < 2; ++count) {
     cursor.next_word_of_file();
     cursor.integer();
@@ -91,9 +101,26 @@ std::string rewrite_off_text(const Source& source, TextCursor cursor, const Geom
   if (!cursor.at_line_end()) {
     cursor.integer(); // edges
   }
-  for (const Vec3& position : geometry.positions) {
+}
+
+void skip_number(TextCursor& cursor) {
+  cursor.skip_blanks();
+  cursor.any_number();
+}
+
+std::string rewrite_off_text(const Source& source, TextCursor cursor, const OffHeader& header,
+                             const Geometry& geometry) {
+  Copy copy(source);
+  skip_off_counts(cursor);
+  for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
     cursor.next_word_of_file();
-    copy.replace_numbers(cursor, position);
+    copy.replace_numbers(cursor, geometry.positions[v]);
+    if (!geometry.normals.empty()) {
+      if (header.has_weight) {
+        skip_number(cursor);
+      }
+      copy.replace_numbers(cursor, geometry.normals[v]);
+    }
     cursor.next_line();
   }
   return std::move(copy).take();
@@ -119,8 +146,11 @@ std::string rewrite_off_binary(const Source& source, std::size_t begin, const Of
                                const Geometry& geometry) {
   std::string bytes(source.bytes);
   std::size_t at = begin + 12;
-  for (const Vec3& position : geometry.positions) {
-    store_floats(bytes, at, position, std::endian::big);
+  for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
+    store_floats(bytes, at, geometry.positions[v], std::endian::big);
+    if (!geometry.normals.empty()) {
+      store_floats(bytes, at + 12, geometry.normals[v], std::endian::big);
+    }
     at += off_vertex_size(header);
   }
   return bytes;
@@ -138,7 +168,48 @@ std::string rewrite_off(const Source& source, const Geometry& geometry) {
       return rewrite_off_binary(source, cursor.offset(), *header, geometry);
     }
   }
-  return rewrite_off_text(source, cursor, geometry);
+  return rewrite_off_text(source, cursor, header.value_or(OffHeader()), geometry);
+}
+
+/// A normal for each vertex of an OFF file, if it has them.
+std::vector<Vec3> normals_of_off(const Source& source, std::size_t vertices) {
+  TextCursor cursor(source);
+  cursor.next_word_of_file();
+  const std::optional<OffHeader> header = off_header(cursor.peek_word());
+  std::vector<Vec3> normals;
+  if (!header || !header->has_normal) {
+    return normals;
+  }
+  cursor.word();
+  cursor.skip_blanks();
+  if (cursor.peek_word() == "BINARY") {
+    cursor.next_line();
+    std::size_t at = cursor.offset() + 12;
+    for (std::size_t v = 0; v < vertices; ++v, at += off_vertex_size(*header)) {
+      const char* from = source.bytes.data() + at + 12;
+      normals.emplace_back(load<float>(from, std::endian::big),
+                           load<float>(from + 4, std::endian::big),
+                           load<float>(from + 8, std::endian::big));
+    }
+    return normals;
+  }
+  skip_off_counts(cursor);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    cursor.next_word_of_file();
+    for (int number = 0; number < (header->has_weight ? 4 : 3); ++number) {
+      skip_number(cursor);
+    }
+    if (!has_three_numbers(cursor)) {
+      return {};
+    }
+    Vec3& normal = normals.emplace_back();
+    for (double& x : normal) {
+      cursor.skip_blanks();
+      x = cursor.any_number().value_or(0);
+    }
+    cursor.next_line();
+  }
+  return normals;
 }
 
 std::string rewrite_stl_binary(const Source& source, const Geometry& geometry) {
@@ -152,16 +223,6 @@ std::string rewrite_stl_binary(const Source& source, const Geometry& geometry) {
     }
   }
   return bytes;
-}
-
-bool has_three_numbers(TextCursor cursor) {
-  for (int i = 0; i < 3; ++i) {
-    cursor.skip_blanks();
-    if (!cursor.any_number()) {
-      return false;
-    }
-  }
-  return true;
 }
 
 std::string rewrite_stl_text(const Source& source, const Geometry& geometry) {
@@ -188,13 +249,15 @@ std::string rewrite_stl_text(const Source& source, const Geometry& geometry) {
   return std::move(copy).take();
 }
 
-// Calls use(vertex, axis, type, begin, end) for each of the three coordinates of each vertex.
+// Calls use(vertex, axis, value, type, begin, end) for each coordinate of each vertex (axes 0 to 2)
+// and of its normal (3 to 5).
 template <class Values, class Use>
-void walk_ply_positions(const PlyHeader& header, Values values, Use use) {
+void walk_ply_vertices(const PlyHeader& header, Values values, Use use) {
   for (const PlyElement& element : header.elements) {
     const bool is_vertex = element.name == "vertex";
-    const std::array<std::optional<std::size_t>, 3> axes = {element.find("x"), element.find("y"),
-                                                            element.find("z")};
+    const std::array<std::optional<std::size_t>, 6> axes = {element.find("x"),  element.find("y"),
+                                                            element.find("z"),  element.find("nx"),
+                                                            element.find("ny"), element.find("nz")};
     const std::size_t rows = element.properties.empty() ? 0 : element.count;
     for (std::size_t row = 0; row < rows; ++row) {
       values.begin_row();
@@ -204,13 +267,14 @@ void walk_ply_positions(const PlyHeader& header, Values values, Use use) {
         if (property.count_type) {
           items = values.value(*property.count_type).value_or(0);
         }
+        double value = 0;
         for (; items > 0; --items) {
-          values.value(property.type);
+          value = values.value(property.type).value_or(0);
         }
         const auto axis = std::find(axes.begin(), axes.end(), std::optional(i));
         if (is_vertex && axis != axes.end()) {
-          use(row, static_cast<std::size_t>(axis - axes.begin()), property.type, values.begin(),
-              values.end());
+          use(row, static_cast<std::size_t>(axis - axes.begin()), value, property.type,
+              values.begin(), values.end());
         }
       }
       values.end_row();
@@ -221,32 +285,84 @@ void walk_ply_positions(const PlyHeader& header, Values values, Use use) {
   }
 }
 
+// The new value of an axis, if it has one.
+std::optional<double> value_of_axis(const Geometry& geometry, std::size_t vertex,
+                                    std::size_t axis) {
+  if (axis < 3) {
+    return geometry.positions[vertex][static_cast<Eigen::Index>(axis)];
+  }
+  return geometry.normals.empty()
+             ? std::nullopt
+             : std::optional(geometry.normals[vertex][static_cast<Eigen::Index>(axis - 3)]);
+}
+
 std::string rewrite_ply_text(const Source& source, const PlyHeader& header,
                              const Geometry& geometry) {
   Copy copy(source);
-  walk_ply_positions(
-      header, PlyText(source, header.end),
-      [&](std::size_t vertex, std::size_t axis, PlyType, std::size_t begin, std::size_t end) {
-        copy.replace(begin, end, geometry.positions[vertex][axis]);
-      });
+  walk_ply_vertices(header, PlyText(source, header.end),
+                    [&](std::size_t vertex, std::size_t axis, double, PlyType, std::size_t begin,
+                        std::size_t end) {
+                      if (const auto value = value_of_axis(geometry, vertex, axis)) {
+                        copy.replace(begin, end, *value);
+                      }
+                    });
   return std::move(copy).take();
 }
 
 std::string rewrite_ply_binary(const Source& source, const PlyHeader& header, std::endian order,
                                const Geometry& geometry) {
   std::string bytes(source.bytes);
-  walk_ply_positions(
-      header, PlyBinary(source, header.end, order),
-      [&](std::size_t vertex, std::size_t axis, PlyType type, std::size_t begin, std::size_t) {
-        const double value = geometry.positions[vertex][axis];
-        type == PlyType::float32 ? store<float>(bytes, begin, value, order)
-                                 : store<double>(bytes, begin, value, order);
-      });
+  walk_ply_vertices(header, PlyBinary(source, header.end, order),
+                    [&](std::size_t vertex, std::size_t axis, double, PlyType type,
+                        std::size_t begin, std::size_t) {
+                      const auto value = value_of_axis(geometry, vertex, axis);
+                      if (value && type == PlyType::float32) {
+                        store<float>(bytes, begin, *value, order);
+                      } else if (value) {
+                        store<double>(bytes, begin, *value, order);
+                      }
+                    });
   return bytes;
 }
 
 bool is_integer(PlyType type) {
   return type != PlyType::float32 && type != PlyType::float64;
+}
+
+/// A normal for each vertex of a PLY file, if it has them as floats.
+std::vector<Vec3> normals_of_ply(const Source& source, std::size_t vertices) {
+  const Result<PlyHeader> header = read_ply_header(source);
+  if (!header) {
+    return {};
+  }
+  for (const PlyElement& element : header->elements) {
+    for (const char* name : {"nx", "ny", "nz"}) {
+      const std::optional<std::size_t> at = element.find(name);
+      if (element.name == "vertex" &&
+          (!at || is_integer(element.properties[*at].type) || element.properties[*at].count_type)) {
+        return {};
+      }
+    }
+  }
+  std::vector<Vec3> normals(vertices, Vec3::Zero());
+  const auto keep = [&](std::size_t vertex, std::size_t axis, double value, PlyType, std::size_t,
+                        std::size_t) {
+    if (axis >= 3 && vertex < vertices) {
+      normals[vertex][static_cast<Eigen::Index>(axis - 3)] = value;
+    }
+  };
+  switch (header->encoding) {
+  case PlyHeader::Encoding::text:
+    walk_ply_vertices(*header, PlyText(source, header->end), keep);
+    break;
+  case PlyHeader::Encoding::little_endian:
+    walk_ply_vertices(*header, PlyBinary(source, header->end, std::endian::little), keep);
+    break;
+  case PlyHeader::Encoding::big_endian:
+    walk_ply_vertices(*header, PlyBinary(source, header->end, std::endian::big), keep);
+    break;
+  }
+  return normals;
 }
 
 Result<std::string> rewrite_ply(const Source& source, const Geometry& geometry) {
@@ -310,7 +426,26 @@ bool all_finite(std::span<const Vec3> vectors) {
 }
 
 Result<FileNormals> normals_in(const Source& source, MeshFormat format) {
-  return format == MeshFormat::obj ? read_obj_normals(source) : FileNormals();
+  if (format == MeshFormat::obj) {
+    return read_obj_normals(source);
+  }
+  FileNormals result;
+  if (format != MeshFormat::ply && format != MeshFormat::off) {
+    return result;
+  }
+  const Result<PolygonMesh> mesh = read_mesh(source.bytes, format, source.name);
+  if (!mesh) {
+    return mesh.error();
+  }
+  const std::size_t vertices = mesh->positions.size();
+  result.normals = format == MeshFormat::ply ? normals_of_ply(source, vertices)
+                                             : normals_of_off(source, vertices);
+  if (!result.normals.empty()) { // each vertex has its own
+    result.of_corner.assign(mesh->corners().begin(), mesh->corners().end());
+  }
+  const auto is_wrong = [](const Vec3& normal) { return !normal.allFinite(); };
+  std::ranges::replace_if(result.normals, is_wrong, Vec3(Vec3::Zero()));
+  return result;
 }
 
 } // namespace

@@ -23,8 +23,8 @@ struct FileNormals {
 };
 
 /// Reads the normals of an OBJ file (a corner's own, so that hard edges are where two corners of
-/// a vertex differ) or of a glTF file (unit vectors, as the scene shows them). For other formats
-/// there are none.
+/// a vertex differ), of a PLY or NOFF file (one for each vertex), or of a glTF file (unit vectors,
+/// as the scene shows them). For STL there are none.
 ///
 /// Errors: those of read_mesh().
 Result<FileNormals> read_normals(const std::filesystem::path& path);

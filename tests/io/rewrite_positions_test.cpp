@@ -5,6 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace cagewright {
 namespace {
 
@@ -138,6 +143,42 @@ TEST(RewritePositions, RefusesWhatDoesNotBelongTogether) {
   broken[1].x() = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(rewrite_positions(original, broken, {}, folder / "out.obj"));
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.obj"});
+}
+
+// In each file the second vertex has other things between its position and its normal.
+TEST(RewritePositions, ChangesNormalsOfPlyAndOff) {
+  const std::string header = "element vertex 3\nproperty float x\nproperty float y\n"
+                             "property float z\nproperty uchar red\nproperty float nx\n"
+                             "property float ny\nproperty float nz\nelement face 1\n"
+                             "property list uchar int vertex_indices\nend_header\n";
+  std::string little = "ply\nformat binary_little_endian 1.0\n" + header;
+  for (const float x : {0.F, 1.F, 2.F}) {
+    little += test::binary(x, x * x, 0.F, std::uint8_t{7}, 0.F, 0.F, 1.F);
+  }
+  little += test::binary(std::uint8_t{3}, 0, 1, 2);
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"a.ply", "ply\nformat ascii 1.0\n" + header +
+                    "0 0 0 7 0 0 1\n1 0 0 8 0 0 1\n0 1 0 9 0 0 1\n3 0 1 2\n"},
+      {"b.ply", little},
+      {"c.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1 # kept\n0 1 0 0 0 1\n3 0 1 2\n"}};
+  const std::vector<Vec3> to = {{0.5, -2, 1}, {0.25, 5, 6}, {7, 8, 3}};
+  const std::vector<Vec3> turned = {{1, 0, 0}, {0, 0.5, -1}, {0, 1, 0}};
+  for (const auto& [name, bytes] : files) {
+    const TemporaryFolder folder;
+    const auto original = folder.add(name, bytes);
+    const Result<FileNormals> before = read_normals(original);
+    ASSERT_TRUE(before) << before.error().message;
+    EXPECT_EQ(before->normals, std::vector<Vec3>(3, Vec3(0, 0, 1))) << name;
+    EXPECT_EQ(before->of_corner, (std::vector<Index>{0, 1, 2})) << name;
+    const Status status = rewrite_positions(original, to, turned, folder / ("out-" + name));
+    ASSERT_TRUE(status) << status.error().message;
+    const Result<FileNormals> after = read_normals(folder / ("out-" + name));
+    ASSERT_TRUE(after) << after.error().message;
+    EXPECT_EQ(after->normals, turned) << name;
+    const Result<PolygonMesh> mesh = read_mesh(folder / ("out-" + name));
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->positions, to) << name;
+  }
 }
 
 TEST(ReadNormals, TellsWhichCornerUsesWhich) {
