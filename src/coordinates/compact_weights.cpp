@@ -3,8 +3,10 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
+#include <mutex>
 
 namespace cagewright {
 namespace {
@@ -12,54 +14,95 @@ namespace {
 constexpr std::size_t tile_points = FloatWeights::tile_points;
 constexpr double largest = 32767;
 
-std::vector<double> steps_of(const FloatWeights& weights) {
-  const std::vector<double> none(weights.cage_vertices(), 0.0);
-  std::vector<double> steps = parallel_reduce_ordered(
-      0, weights.tile_count(), 256, none,
-      [&](std::size_t first, std::size_t last) {
-        std::vector<double> sizes = none;
-        for (std::size_t t = first; t < last; ++t) {
-          const std::span<const float> tile = weights.tile(t);
-          for (std::size_t i = 0; i < tile.size(); ++i) {
-            double& size = sizes[i / tile_points];
-            size = std::max(size, std::abs(static_cast<double>(tile[i])));
-          }
-        }
-        return sizes;
-      },
-      [](std::vector<double>& a, const std::vector<double>& b) {
-        for (std::size_t c = 0; c < a.size(); ++c) {
-          a[c] = std::max(a[c], b[c]);
-        }
-      });
-  for (double& step : steps) {
-    step /= largest;
+std::size_t block_count(const CompactWeights& weights) {
+  return (weights.tile_count() + CompactWeights::block_tiles - 1) / CompactWeights::block_tiles;
+}
+
+/// Rounds the tiles of a block, `from`, one after the other.
+void round_block(std::size_t block, std::span<const float> from, CompactWeights& compact) {
+  const std::size_t count = compact.cage_vertices();
+  const std::span<double> steps = std::span(compact.steps).subspan(block * count, count);
+  std::ranges::fill(steps, 0.0);
+  const std::size_t tile_size = tile_points * count;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    double& step = steps[i % tile_size / tile_points];
+    step = std::max(step, std::abs(static_cast<double>(from[i])) / largest);
   }
-  return steps;
+  for (std::size_t first = 0; first < from.size(); first += tile_size) {
+    const std::size_t tile = block * CompactWeights::block_tiles + first / tile_size;
+    const std::span<std::int16_t> to = compact.tiles.tile(tile);
+    for (std::size_t i = 0; i < tile_size; ++i) {
+      const double step = steps[i / tile_points];
+      to[i] = static_cast<std::int16_t>(step > 0 ? std::lround(from[first + i] / step) : 0);
+    }
+  }
 }
 
 } // namespace
 
+CompactWeights::CompactWeights(std::size_t points, std::size_t cage_vertices)
+    : tiles(points, cage_vertices), steps(block_count(*this) * cage_vertices) {}
+
 CompactWeights make_compact(const FloatWeights& weights) {
-  CompactWeights compact{{weights.points(), weights.cage_vertices()}, steps_of(weights)};
-  parallel_for(0, weights.tile_count(), 16, [&](std::size_t t) {
-    const std::span<const float> from = weights.tile(t);
-    const std::span<std::int16_t> to = compact.tiles.tile(t);
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      const double step = compact.steps[i / tile_points];
-      to[i] = static_cast<std::int16_t>(step > 0 ? std::lround(from[i] / step) : 0);
-    }
+  CompactWeights compact(weights.points(), weights.cage_vertices());
+  const std::size_t tile_size = tile_points * weights.cage_vertices();
+  parallel_for(0, block_count(compact), 1, [&](std::size_t block) {
+    const std::size_t first = block * CompactWeights::block_tiles;
+    const std::size_t tiles = std::min(CompactWeights::block_tiles, weights.tile_count() - first);
+    round_block(block, {weights.tile(first).data(), tiles * tile_size}, compact);
   });
   return compact;
 }
 
+Result<SolvedCompactWeights> solve_compact(const MeanValueSolver& solver,
+                                           std::span<const Vec3> points, const Progress& progress) {
+  SolvedCompactWeights solved{{points.size(), solver.cage_vertices()}};
+  const std::size_t tile_size = tile_points * solver.cage_vertices();
+  const std::size_t blocks = block_count(solved.weights);
+  std::mutex reporting;
+  std::size_t finished = 0;
+  parallel_for(0, blocks, 1, [&](std::size_t block) {
+    const std::size_t first = block * CompactWeights::block_tiles;
+    const std::size_t tiles =
+        std::min(CompactWeights::block_tiles, solved.weights.tile_count() - first);
+    AlignedBuffer<float> exact(tiles * tile_size);
+    int on_surface = 0;
+    int undefined = 0;
+    for (std::size_t t = 0; t < tiles; ++t) {
+      if (progress.cancelled()) {
+        return;
+      }
+      const std::size_t begin = (first + t) * tile_points;
+      const TileReport report =
+          solver.solve(points.subspan(begin, std::min(tile_points, points.size() - begin)),
+                       exact.span().subspan(t * tile_size, tile_size));
+      on_surface += std::popcount(report.on_surface);
+      undefined += std::popcount(report.undefined);
+    }
+    round_block(block, exact.span(), solved.weights);
+    const std::scoped_lock lock(reporting);
+    solved.on_surface += static_cast<std::size_t>(on_surface);
+    solved.undefined += static_cast<std::size_t>(undefined);
+    progress(static_cast<double>(++finished) / static_cast<double>(blocks), "bind");
+  });
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
+  return solved;
+}
+
 double position_error_bound(const CompactWeights& weights, std::span<const Vec3> displacements) {
   assert(displacements.size() == weights.cage_vertices());
-  double bound = 0;
-  for (std::size_t c = 0; c < displacements.size(); ++c) {
-    bound += 0.5 * weights.steps[c] * displacements[c].norm();
+  double greatest = 0;
+  for (std::size_t t = 0; t < weights.tile_count(); t += CompactWeights::block_tiles) {
+    const std::span<const double> steps = weights.steps_of_tile(t);
+    double bound = 0;
+    for (std::size_t c = 0; c < displacements.size(); ++c) {
+      bound += 0.5 * steps[c] * displacements[c].norm();
+    }
+    greatest = std::max(greatest, bound);
   }
-  return bound;
+  return greatest;
 }
 
 } // namespace cagewright

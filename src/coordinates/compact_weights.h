@@ -2,8 +2,11 @@
 /// Weights in half the memory, with a proven bound on what that costs.
 #pragma once
 
+#include "coordinates/mean_value.h"
 #include "coordinates/weights.h"
 #include "core/geometry.h"
+#include "core/progress.h"
+#include "core/result.h"
 
 #include <cstdint>
 #include <span>
@@ -11,26 +14,50 @@
 
 namespace cagewright {
 
-/// Weights as 16-bit multiples of a step, one for each cage vertex:
-/// weight(p, c) = tiles.at(p, c) * steps[c].
+/// Weights as 16-bit multiples of a step, one for each cage vertex in each block of 1024 points:
+/// weight(p, c) = tiles.at(p, c) * steps_of_tile(p / 16)[c].
 ///
 /// Meant for displacements (rest position + sum of weight times displacement), where a cage at rest
 /// leaves the model exactly where it is. Half-precision floats would take the same memory, and err
 /// eight times as much on the weights that matter, the large ones.
 struct CompactWeights {
+  static constexpr std::size_t block_tiles = 64; ///< tiles that share their steps
+
   WeightTiles<std::int16_t> tiles;
-  std::vector<double> steps; ///< C
+  std::vector<double> steps; ///< C for each block
+
+  CompactWeights() = default;
+  /// The weights are not set.
+  CompactWeights(std::size_t points, std::size_t cage_vertices);
 
   [[nodiscard]] std::size_t points() const { return tiles.points(); }
   [[nodiscard]] std::size_t cage_vertices() const { return tiles.cage_vertices(); }
+  [[nodiscard]] std::size_t tile_count() const { return tiles.tile_count(); }
+  [[nodiscard]] std::size_t bytes() const { return tiles.bytes(); }
+  [[nodiscard]] std::span<const double> steps_of_tile(std::size_t tile) const {
+    return std::span(steps).subspan(tile / block_tiles * cage_vertices(), cage_vertices());
+  }
 };
 
-/// Rounds the weights: the step of a cage vertex is its largest weight / 32767, so every weight
-/// changes by half a step at most.
+/// Rounds the weights: a step is the largest weight of the cage vertex in the block / 32767, so
+/// every weight changes by half a step at most.
 CompactWeights make_compact(const FloatWeights& weights);
 
+struct SolvedCompactWeights {
+  CompactWeights weights;
+  std::size_t on_surface = 0; ///< points that lie on the cage
+  std::size_t undefined = 0;  ///< points without weights: their rows are zero
+};
+
+/// The weights of all points from a prepared cage, rounded block by block: they never stand in
+/// memory otherwise. Errors: cancelled.
+Result<SolvedCompactWeights> solve_compact(const MeanValueSolver& solver,
+                                           std::span<const Vec3> points,
+                                           const Progress& progress = {});
+
 /// No point is moved by these displacements (C) farther than this from where the original weights
-/// would have moved it: the sum of half a step times the length of the displacement.
+/// would have moved it: the sum of half a step times the length of the displacement, in the block
+/// where that is greatest.
 double position_error_bound(const CompactWeights& weights, std::span<const Vec3> displacements);
 
 } // namespace cagewright

@@ -2,11 +2,11 @@
 /// Weights times displacements: where the points go.
 #pragma once
 
+#include "coordinates/compact_weights.h"
 #include "coordinates/weights.h"
 #include "core/geometry.h"
 #include "mesh/triangle_mesh.h"
 
-#include <cstdint>
 #include <span>
 
 namespace cagewright {
@@ -17,7 +17,7 @@ namespace cagewright {
 /// `positions` itself to go on from where they are.
 ///
 /// \param cage_vertices  k indices < C
-/// \param displacements  k vectors (times the step, for the tiles of CompactWeights)
+/// \param displacements  k vectors
 /// \param moved          empty, or for each tile of 16 points the greatest change of a coordinate
 ///                       so far: this call's is added
 ///
@@ -34,9 +34,11 @@ extern template void move_points(const WeightTiles<double>&, std::span<const Ind
 extern template void move_points(const WeightTiles<float>&, std::span<const Index>,
                                  std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>,
                                  std::span<double>);
-extern template void move_points(const WeightTiles<std::int16_t>&, std::span<const Index>,
-                                 std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>,
-                                 std::span<double>);
+
+/// The same with compact weights.
+void move_points(const CompactWeights& weights, std::span<const Index> cage_vertices,
+                 std::span<const Vec3> displacements, std::span<const Vec3> base,
+                 std::span<Vec3> positions, std::span<double> moved = {});
 
 /// The same for one tile of weights that is at hand, and up to 16 points.
 template <class T>

@@ -10,6 +10,7 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "deform/apply_simd.cpp"
@@ -27,6 +28,7 @@ namespace {
 struct Moves {
   std::span<const Index> cage_vertices;
   std::span<const Vec3> displacements;
+  std::span<const double> steps = {}; // of compact weights, for all of the cage's vertices
 };
 
 /// Where sixteen points come from and go to: x, y and z of each, as Vec3 has them.
@@ -79,7 +81,10 @@ HWY_INLINE V move_points_from(const T* tile, std::size_t tile_size, std::size_t 
     // The same vertex in the next tile. With few vertices moved the processor does not see the
     // pattern by itself; beyond the last tile nothing happens.
     hwy::Prefetch(weights + tile_size);
-    const Vec3& by = moves.displacements[k];
+    Vec3 by = moves.displacements[k];
+    if constexpr (std::is_integral_v<T>) {
+      by *= moves.steps[moves.cage_vertices[k]];
+    }
     const V by_x = hn::Set(d, by.x());
     const V by_y = hn::Set(d, by.y());
     const V by_z = hn::Set(d, by.z());
@@ -178,32 +183,47 @@ double move_part(std::span<const T> tile, const Moves& moves, std::span<const Ve
 
 } // namespace
 
-template <class T>
-void move_points(const WeightTiles<T>& weights, std::span<const Index> cage_vertices,
-                 std::span<const Vec3> displacements, std::span<const Vec3> base,
-                 std::span<Vec3> positions, std::span<double> moved) {
-  assert(cage_vertices.size() == displacements.size());
+namespace {
+
+template <class T, class StepsOf>
+void move_all(const WeightTiles<T>& weights, const Moves& moves, std::span<const Vec3> base,
+              std::span<Vec3> positions, std::span<double> moved, const StepsOf& steps_of) {
+  assert(moves.cage_vertices.size() == moves.displacements.size());
   assert(base.size() == weights.points() && positions.size() == weights.points());
   assert(moved.empty() || moved.size() == weights.tile_count());
-  const Moves moves{cage_vertices, displacements};
   parallel_for(0, weights.tile_count(), 64, [&](std::size_t t) {
     const std::size_t first = t * 16;
     const std::size_t count = std::min<std::size_t>(16, weights.points() - first);
-    const double change = move_part(weights.tile(t), moves, base.subspan(first, count),
-                                    positions.subspan(first, count));
+    const double change =
+        move_part(weights.tile(t), {moves.cage_vertices, moves.displacements, steps_of(t)},
+                  base.subspan(first, count), positions.subspan(first, count));
     if (!moved.empty()) {
       moved[t] += change;
     }
   });
 }
 
+} // namespace
+
+template <class T>
+void move_points(const WeightTiles<T>& weights, std::span<const Index> cage_vertices,
+                 std::span<const Vec3> displacements, std::span<const Vec3> base,
+                 std::span<Vec3> positions, std::span<double> moved) {
+  move_all(weights, {cage_vertices, displacements}, base, positions, moved,
+           [](std::size_t) { return std::span<const double>(); });
+}
+
 template void move_points(const WeightTiles<double>&, std::span<const Index>, std::span<const Vec3>,
                           std::span<const Vec3>, std::span<Vec3>, std::span<double>);
 template void move_points(const WeightTiles<float>&, std::span<const Index>, std::span<const Vec3>,
                           std::span<const Vec3>, std::span<Vec3>, std::span<double>);
-template void move_points(const WeightTiles<std::int16_t>&, std::span<const Index>,
-                          std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>,
-                          std::span<double>);
+
+void move_points(const CompactWeights& weights, std::span<const Index> cage_vertices,
+                 std::span<const Vec3> displacements, std::span<const Vec3> base,
+                 std::span<Vec3> positions, std::span<double> moved) {
+  move_all(weights.tiles, {cage_vertices, displacements}, base, positions, moved,
+           [&](std::size_t tile) { return weights.steps_of_tile(tile); });
+}
 
 template <class T>
 void move_tile(std::span<const T> tile, std::span<const Index> cage_vertices,

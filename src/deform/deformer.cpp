@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cassert>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace cagewright {
@@ -49,8 +48,8 @@ Result<Deformer> Deformer::bind(const PolygonMesh& model, const PolygonMesh& cag
     return make(solve_all<double>(*solver, model.positions, progress),
                 [](Weights weights) { return Storage(std::move(weights)); });
   case WeightStorage::compact:
-    return make(solve_all<float>(*solver, model.positions, progress),
-                [](const FloatWeights& weights) { return Storage(make_compact(weights)); });
+    return make(solve_compact(*solver, model.positions, progress),
+                [](CompactWeights weights) { return Storage(std::move(weights)); });
   case WeightStorage::single:
     break;
   }
@@ -111,30 +110,20 @@ void Deformer::update() {
 }
 
 void Deformer::move_model() {
+  std::sort(moved_.begin(), moved_.end()); // memory in order
   // A pose set as a whole starts from the rest, so that it does not depend on the way there.
   const bool whole = moved_.size() == cage_.size();
-  if (whole) {
-    std::sort(moved_.begin(), moved_.end()); // memory in order
-  }
   const std::vector<Vec3>& from = whole ? cage_rest_ : applied_cage_;
   const std::span<const Vec3> base = whole ? rest_ : positions_;
   for (std::size_t k = 0; k < moved_.size(); ++k) {
     displacements_[k] = cage_[moved_[k]] - from[moved_[k]];
   }
   const std::span<const Vec3> displacements = std::span(displacements_).first(moved_.size());
-  const auto move = [&](const auto& weights) {
-    move_points(weights, moved_, displacements, base, positions_, tile_travel_);
-  };
-  if (const auto* compact = std::get_if<CompactWeights>(&weights_)) {
-    for (std::size_t k = 0; k < moved_.size(); ++k) {
-      displacements_[k] *= compact->steps[moved_[k]];
-    }
-    move(compact->tiles);
-  } else if (const auto* single = std::get_if<FloatWeights>(&weights_)) {
-    move(*single);
-  } else {
-    move(std::get<Weights>(weights_));
-  }
+  std::visit(
+      [&](const auto& weights) {
+        move_points(weights, moved_, displacements, base, positions_, tile_travel_);
+      },
+      weights_);
 }
 
 void Deformer::update_normals() {
@@ -160,15 +149,7 @@ double Deformer::position_error_bound() const {
 }
 
 std::size_t Deformer::weight_bytes() const {
-  return std::visit(
-      [](const auto& weights) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(weights)>, CompactWeights>) {
-          return weights.tiles.bytes();
-        } else {
-          return weights.bytes();
-        }
-      },
-      weights_);
+  return std::visit([](const auto& weights) { return weights.bytes(); }, weights_);
 }
 
 } // namespace cagewright

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace cagewright {
 namespace {
@@ -13,7 +15,9 @@ namespace {
 constexpr std::size_t grain = 2048;
 
 Vec3 normalized_or_zero(const Vec3& v) {
-  const double length = v.stableNorm();
+  const double square = v.squaredNorm();
+  // Tiny and huge models: their squares are beyond the range of double.
+  const double length = square > 1e-200 && square < 1e200 ? std::sqrt(square) : v.stableNorm();
   return length > 0 ? Vec3(v / length) : Vec3::Zero();
 }
 
@@ -68,7 +72,11 @@ NormalField::NormalField(const PolygonMesh& mesh, NormalSlots slots, NormalWeigh
     slot_corners_[next[slots_.of_corner[c]]++] = static_cast<Index>(c);
   }
   face_normals_.assign(mesh.face_count(), Vec3::Zero());
-  changed_faces_.resize(mesh.face_count());
+  list_faces_of_tiles();
+  changed_faces_.reserve(mesh.face_count());
+  changed_slots_.reserve(slots_.count);
+  face_changes_.assign(mesh.face_count(), 0);
+  slot_changes_.assign(slots_.count, 0);
   normals_.assign(slots_.count, Vec3::Zero());
 
   std::vector<Vec3> given = std::move(slots_.given); // the first pass computes the means
@@ -81,39 +89,97 @@ NormalField::NormalField(const PolygonMesh& mesh, NormalSlots slots, NormalWeigh
   }
 }
 
+void NormalField::list_faces_of_tiles() {
+  Index vertices = 0;
+  for (const Index v : corners_) {
+    vertices = std::max(vertices, v + 1);
+  }
+  const std::size_t tiles = (std::size_t(vertices) + 15) / 16;
+  tile_begins_.assign(tiles + 1, 0);
+  // Once to count, once to fill; a face with two corners in a tile follows itself in its list.
+  std::vector<Index> last(tiles);
+  for (const bool fill : {false, true}) {
+    std::ranges::fill(last, std::numeric_limits<Index>::max());
+    std::vector<std::size_t> next(tile_begins_.begin(), tile_begins_.end() - 1);
+    for (std::size_t c = 0; c < corners_.size(); ++c) {
+      const std::size_t tile = corners_[c] / 16;
+      const Index face = face_of_corner_[c];
+      if (std::exchange(last[tile], face) == face) {
+        continue;
+      }
+      if (fill) {
+        tile_faces_[next[tile]++] = face;
+      } else {
+        ++tile_begins_[tile + 1];
+      }
+    }
+    if (!fill) {
+      std::partial_sum(tile_begins_.begin(), tile_begins_.end(), tile_begins_.begin());
+      tile_faces_.resize(tile_begins_.back());
+    }
+  }
+}
+
 void NormalField::update(std::span<const Vec3> positions,
                          std::span<const std::uint8_t> moved_tiles) {
-  update_faces(positions, moved_tiles);
-  update_slots(positions);
+  const auto moved = static_cast<std::size_t>(
+      std::count_if(moved_tiles.begin(), moved_tiles.end(), [](auto t) { return t != 0; }));
+  if (moved_tiles.empty() || 2 * moved > moved_tiles.size()) { // lists would cost more
+    parallel_for(0, face_normals_.size(), grain, [&](std::size_t f) { update_face(f, positions); });
+    parallel_for(0, normals_.size(), grain, [&](std::size_t s) { update_slot(s, positions); });
+    return;
+  }
+  find_changed(moved_tiles);
+  parallel_for(0, changed_faces_.size(), grain,
+               [&](std::size_t i) { update_face(changed_faces_[i], positions); });
+  parallel_for(0, changed_slots_.size(), grain,
+               [&](std::size_t i) { update_slot(changed_slots_[i], positions); });
 }
 
-void NormalField::update_faces(std::span<const Vec3> positions,
-                               std::span<const std::uint8_t> moved_tiles) {
-  parallel_for(0, face_normals_.size(), grain, [&](std::size_t f) {
-    const std::span<const Index> face =
-        std::span(corners_).subspan(face_begins_[f], face_begins_[f + 1] - face_begins_[f]);
-    changed_faces_[f] = moved_tiles.empty() || std::any_of(face.begin(), face.end(), [&](Index v) {
-                          return moved_tiles[v / 16] != 0;
-                        });
-    if (changed_faces_[f] != 0) {
-      const Vec3 area = area_vector(positions, face);
-      face_normals_[f] = weighting_ == NormalWeighting::area ? area : normalized_or_zero(area);
+/// Lists the faces at moved tiles and the slots at their corners, each once.
+void NormalField::find_changed(std::span<const std::uint8_t> moved_tiles) {
+  changed_faces_.clear();
+  changed_slots_.clear();
+  const std::size_t tiles = std::min(moved_tiles.size(), tile_begins_.size() - 1);
+  for (std::size_t t = 0; t < tiles; ++t) {
+    if (moved_tiles[t] == 0) {
+      continue;
     }
-  });
+    for (std::size_t i = tile_begins_[t]; i < tile_begins_[t + 1]; ++i) {
+      const Index face = tile_faces_[i];
+      if (std::exchange(face_changes_[face], std::uint8_t(1)) == 0) {
+        changed_faces_.push_back(face);
+      }
+    }
+  }
+  for (const Index face : changed_faces_) {
+    face_changes_[face] = 0;
+    for (std::size_t c = face_begins_[face]; c < face_begins_[face + 1]; ++c) {
+      const Index slot = slots_.of_corner[c];
+      if (std::exchange(slot_changes_[slot], std::uint8_t(1)) == 0) {
+        changed_slots_.push_back(slot);
+      }
+    }
+  }
+  for (const Index slot : changed_slots_) {
+    slot_changes_[slot] = 0;
+  }
 }
 
-void NormalField::update_slots(std::span<const Vec3> positions) {
-  parallel_for(0, normals_.size(), grain, [&](std::size_t slot) {
-    const auto begin = slot_corners_.begin() + static_cast<std::ptrdiff_t>(slot_begins_[slot]);
-    const auto end = slot_corners_.begin() + static_cast<std::ptrdiff_t>(slot_begins_[slot + 1]);
-    if (std::none_of(begin, end,
-                     [&](Index c) { return changed_faces_[face_of_corner_[c]] != 0; })) {
-      return;
-    }
-    const Vec3 mean = mean_normal(slot, positions);
-    normals_[slot] =
-        slots_.given.empty() ? mean : turned(slots_.given[slot], rest_means_[slot], mean);
-  });
+void NormalField::update_face(std::size_t f, std::span<const Vec3> positions) {
+  const std::span<const Index> face =
+      std::span(corners_).subspan(face_begins_[f], face_begins_[f + 1] - face_begins_[f]);
+  const Vec3 area = area_vector(positions, face);
+  face_normals_[f] = weighting_ == NormalWeighting::area ? area : normalized_or_zero(area);
+}
+
+void NormalField::update_slot(std::size_t slot, std::span<const Vec3> positions) {
+  if (slot_begins_[slot] == slot_begins_[slot + 1]) {
+    return;
+  }
+  const Vec3 mean = mean_normal(slot, positions);
+  normals_[slot] =
+      slots_.given.empty() ? mean : turned(slots_.given[slot], rest_means_[slot], mean);
 }
 
 Vec3 NormalField::mean_normal(std::size_t slot, std::span<const Vec3> positions) const {

@@ -44,7 +44,7 @@ public:
   /// Brings the normals up to date where vertices have moved. `positions` are V positions;
   /// moved_tiles tells for each 16 vertices whether any of them moved since the last call; empty
   /// means that all did. No memory is taken. Cost: O(faces at moved vertices), and a look at all
-  /// faces.
+  /// tiles.
   void update(std::span<const Vec3> positions, std::span<const std::uint8_t> moved_tiles = {});
 
   /// K unit normals, or zero where all faces of a slot are degenerate.
@@ -52,8 +52,10 @@ public:
   [[nodiscard]] const NormalSlots& slots() const { return slots_; }
 
 private:
-  void update_faces(std::span<const Vec3> positions, std::span<const std::uint8_t> moved_tiles);
-  void update_slots(std::span<const Vec3> positions);
+  void list_faces_of_tiles();
+  void find_changed(std::span<const std::uint8_t> moved_tiles);
+  void update_face(std::size_t face, std::span<const Vec3> positions);
+  void update_slot(std::size_t slot, std::span<const Vec3> positions);
   [[nodiscard]] Vec3 mean_normal(std::size_t slot, std::span<const Vec3> positions) const;
 
   std::vector<Index> corners_;           // of all faces, one after the other
@@ -62,7 +64,11 @@ private:
   std::vector<std::size_t> slot_begins_; // K + 1 offsets into slot_corners_
   std::vector<Index> face_of_corner_;
   std::vector<Vec3> face_normals_; // F: length twice the area, or 1 for angle weights
-  std::vector<std::uint8_t> changed_faces_;
+  std::vector<Index> tile_faces_;  // faces with a corner in a tile of vertices, tile after tile
+  std::vector<std::size_t> tile_begins_;
+  // Room for update(): which faces and slots change, as lists and as flags.
+  std::vector<Index> changed_faces_, changed_slots_;
+  std::vector<std::uint8_t> face_changes_, slot_changes_;
   std::vector<Vec3> rest_means_; // K, when normals are given
   std::vector<Vec3> normals_;
   NormalSlots slots_;

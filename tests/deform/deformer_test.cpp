@@ -242,5 +242,35 @@ TEST(DeformStreaming, MovesEveryPoseOnItsOwn) {
   }
 }
 
+TEST(CompactWeights, AreRoundedBlockByBlockToHalfAStep) {
+  const PolygonMesh model(make_torus(0.25, 80, 40)); // 3200 vertices in four blocks
+  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage());
+  ASSERT_TRUE(solver);
+  const auto exact = solve_all<float>(*solver, model.positions);
+  const auto compact = solve_compact(*solver, model.positions);
+  ASSERT_TRUE(exact && compact);
+  const CompactWeights same = make_compact(exact->weights);
+  EXPECT_EQ(compact->weights.steps, same.steps);
+  ASSERT_EQ(same.steps.size(), 4 * cage().positions.size());
+  for (std::size_t p = 0; p < model.positions.size(); ++p) {
+    const std::span<const double> steps = same.steps_of_tile(p / 16);
+    for (std::size_t c = 0; c < steps.size(); ++c) {
+      ASSERT_EQ(compact->weights.tiles.at(p, c), same.tiles.at(p, c));
+      ASSERT_LE(std::abs(same.tiles.at(p, c) * steps[c] - exact->weights.at(p, c)),
+                0.5001 * steps[c]);
+    }
+  }
+}
+
+TEST(CompactWeights, StopWhenAsked) {
+  std::stop_source stop;
+  stop.request_stop();
+  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage());
+  ASSERT_TRUE(solver);
+  const auto compact = solve_compact(*solver, model().positions, Progress(stop.get_token()));
+  ASSERT_FALSE(compact);
+  EXPECT_EQ(compact.error().code, ErrorCode::cancelled);
+}
+
 } // namespace
 } // namespace cagewright

@@ -104,6 +104,25 @@ TEST(NormalField, LooksOnlyWhereVerticesMoved) {
   EXPECT_LT(changed, 100U); // the tile and its neighbours
 }
 
+TEST(NormalField, IsTheSameWhetherAllOrOnlyMovedVerticesAreLookedAt) {
+  PolygonMesh torus(make_torus(0.3, 40, 20));
+  for (const NormalWeighting weighting : {NormalWeighting::area, NormalWeighting::angle}) {
+    NormalField some(torus, hard_edges(torus), weighting);
+    NormalField all = some;
+    std::vector<Vec3> positions = torus.positions;
+    std::vector<std::uint8_t> moved((positions.size() + 15) / 16, 0);
+    for (const std::size_t v : {3U, 400U, 411U, 799U}) {
+      positions[v] += Vec3(0.1, 0.2, 0.05);
+      moved[v / 16] = 1;
+    }
+    some.update(positions, moved);
+    all.update(positions);
+    for (std::size_t n = 0; n < all.normals().size(); ++n) {
+      ASSERT_EQ(some.normals()[n], all.normals()[n]) << n;
+    }
+  }
+}
+
 TEST(NormalField, IsZeroWhereAllFacesAreDegenerate) {
   PolygonMesh sliver;
   sliver.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}};
