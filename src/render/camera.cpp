@@ -14,25 +14,6 @@ double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-Mat3 camera_axes(const View& view, UpAxis up) {
-  const double yaw = radians(view.yaw_degrees);
-  const double pitch = radians(view.pitch_degrees);
-  // In a frame where y is up and the model faces z.
-  const Vec3 right(std::cos(yaw), 0, -std::sin(yaw));
-  const Vec3 backward(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
-                      std::cos(yaw) * std::cos(pitch));
-  Mat3 axes;
-  axes.row(0) = right;
-  axes.row(1) = backward.cross(right);
-  axes.row(2) = backward;
-  if (up == UpAxis::z) { // y of that frame is z of the model, z of it is -y
-    const Mat3 y_up = axes;
-    axes.col(1) = -y_up.col(2);
-    axes.col(2) = y_up.col(1);
-  }
-  return axes;
-}
-
 /// Along one side of the frame: the range of points seen, sheared so that the planes that bound
 /// the view through the eye at distance 0 become lines of constant value.
 struct Reach {
@@ -64,6 +45,25 @@ void center_picture(Camera& camera, const std::vector<Vec3>& points) {
 
 } // namespace
 
+Mat3 view_axes(const View& view, UpAxis up) {
+  const double yaw = radians(view.yaw_degrees);
+  const double pitch = radians(view.pitch_degrees);
+  // In a frame where y is up and the model faces z.
+  const Vec3 right(std::cos(yaw), 0, -std::sin(yaw));
+  const Vec3 backward(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
+                      std::cos(yaw) * std::cos(pitch));
+  Mat3 axes;
+  axes.row(0) = right;
+  axes.row(1) = backward.cross(right);
+  axes.row(2) = backward;
+  if (up == UpAxis::z) { // y of that frame is z of the model, z of it is -y
+    const Mat3 y_up = axes;
+    axes.col(1) = -y_up.col(2);
+    axes.col(2) = y_up.col(1);
+  }
+  return axes;
+}
+
 std::optional<View> view_named(std::string_view name) {
   static constexpr std::array<std::pair<std::string_view, View>, 8> names = {{
       {"front", {0, 0}},
@@ -86,7 +86,7 @@ std::optional<View> view_named(std::string_view name) {
 Camera fitted_camera(const View& view, UpAxis up, double angle_degrees, double aspect,
                      double margin, const std::vector<Vec3>& points) {
   Camera camera;
-  camera.axes = camera_axes(view, up);
+  camera.axes = view_axes(view, up);
   camera.tan_half_height = std::tan(radians(angle_degrees) / 2);
 
   const double slope_y = camera.tan_half_height * (1 - 2 * margin);

@@ -22,6 +22,9 @@ struct View {
 /// front, back, left, right, side (as right), top, bottom, three-quarter; nothing for other names.
 std::optional<View> view_named(std::string_view name);
 
+/// Rows: right, up and backward (towards the viewer) of a view, in the model's coordinates.
+Mat3 view_axes(const View& view, UpAxis up);
+
 /// A pinhole camera.
 struct Camera {
   Mat3 axes = Mat3::Identity();  ///< rows: right, up and backward in the model's coordinates
