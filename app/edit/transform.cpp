@@ -195,7 +195,7 @@ Mat3 local_axes(const PolygonMesh& cage, const CageGraph& graph, std::span<const
 // ---------------------------------------------------------------- targets
 
 TransformTarget::TransformTarget(std::vector<Vec3> start, std::vector<Index> vertices,
-                                 const CageGraph& graph, Options options)
+                                 const CageGraph& graph, TransformOptions options)
     : start_(std::move(start)), vertices_(std::move(vertices)), options_(std::move(options)) {
   find_distances(graph);
   if (options_.pivot == Pivot::individual) {

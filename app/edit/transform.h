@@ -77,20 +77,20 @@ Vec3 pivot_of(std::span<const Vec3> positions, std::span<const Index> vertices, 
 /// of the selection itself. World axes if that is zero.
 Mat3 local_axes(const PolygonMesh& cage, const CageGraph& graph, std::span<const Index> vertices);
 
+struct TransformOptions {
+  ProportionalOptions proportional = {};
+  Pivot pivot = Pivot::median;
+  std::optional<Symmetry> symmetry = std::nullopt; ///< edit symmetrically
+};
+
 /// Carries transformations out: made when a drag begins, asked while it goes on.
 class TransformTarget {
 public:
-  struct Options {
-    ProportionalOptions proportional = {};
-    Pivot pivot = Pivot::median;
-    std::optional<Symmetry> symmetry = std::nullopt; ///< edit symmetrically
-  };
-
   TransformTarget() = default;
   /// \param start     V positions where the drag began
   /// \param vertices  the selected ones, ascending
   TransformTarget(std::vector<Vec3> start, std::vector<Index> vertices, const CageGraph& graph,
-                  Options options = {});
+                  TransformOptions options = {});
 
   /// V positions.
   [[nodiscard]] std::vector<Vec3> moved(const Transform& transform) const;
@@ -101,7 +101,7 @@ public:
   [[nodiscard]] const std::vector<Vec3>& start() const { return start_; }
   /// 1 for the selected vertices, and for those that follow as falloff() says.
   [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
-  [[nodiscard]] const Options& options() const { return options_; }
+  [[nodiscard]] const TransformOptions& options() const { return options_; }
 
 private:
   void find_distances(const CageGraph& graph);
@@ -111,7 +111,7 @@ private:
 
   std::vector<Vec3> start_;
   std::vector<Index> vertices_;
-  Options options_;
+  TransformOptions options_;
   std::vector<double> distances_; // from the nearest selected vertex
   std::vector<Index> nearest_;    // that vertex
   std::vector<double> weights_;

@@ -2,25 +2,41 @@
 /// The window onto model and cage.
 #pragma once
 
+#include "app/commands/cage_actions.h"
 #include "app/commands/editor.h"
+#include "app/edit/gizmo.h"
+#include "app/edit/orbit_camera.h"
+#include "app/edit/pick.h"
+#include "app/edit/transform_drag.h"
+#include "app/view/canvas.h"
+#include "app/view/scene_marks.h"
 
 #include <QImage>
 #include <QJsonObject>
 #include <QOpenGLWidget>
 
+#include <memory>
+#include <optional>
+#include <vector>
+
 namespace cagewright::app {
 
 /// Draws the document and lets the mouse edit it.
+///
+/// Middle button: orbit; with Shift: pan; wheel: zoom. Alt with the left button does the same as
+/// the middle one, for track pads. Left button: select by a click, a box or (Ctrl) a lasso; drag
+/// the gizmo, a vertex or an edge. Keys are those of Blender: see keyPressEvent().
 class Viewport : public QOpenGLWidget {
   Q_OBJECT
 
 public:
   explicit Viewport(Editor& editor, QWidget* parent = nullptr);
+  ~Viewport() override;
 
   /// front, back, left, right, top, bottom, three-quarter.
   void set_standard_view(const QString& name);
   void set_orthographic(bool orthographic);
-  [[nodiscard]] bool orthographic() const;
+  [[nodiscard]] bool orthographic() const { return !camera_.is_perspective(); }
   /// Brings everything, or only the selection, into view.
   void frame_all();
   void frame_selection();
@@ -34,9 +50,110 @@ public:
 
   void set_dark(bool dark);
 
+  [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
+  /// Where the gizmo stands, while there is one.
+  [[nodiscard]] std::optional<GizmoFrame> gizmo() const;
+  /// A transformation is being made by the mouse or by keys.
+  [[nodiscard]] bool transforming() const { return drag_.is_active(); }
+  /// Starts one as by a key, with the mouse where it is.
+  void begin_transform(TransformKind kind, Handle handle = Handle::none);
+
 Q_SIGNALS:
   void cameraChanged();
   void hint(const QString& text); ///< what the mouse would do here: for the status bar
+
+protected:
+  void initializeGL() override;
+  void paintGL() override;
+  void resizeGL(int width, int height) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void keyReleaseEvent(QKeyEvent* event) override;
+  void leaveEvent(QEvent* event) override;
+  void focusOutEvent(QFocusEvent* event) override;
+  bool event(QEvent* event) override;
+
+private:
+  enum class Gesture { none, orbit, pan, zoom, press, box, lasso, transform };
+  struct Press {
+    Pixel at = Pixel::Zero();
+    Qt::KeyboardModifiers modifiers;
+    std::optional<Pick> pick;
+  };
+  struct Dirty {
+    bool model = true;
+    bool positions = false;
+    bool colors = true;
+    bool voxels = true;
+    bool frame = true;
+  };
+
+  // What is drawn
+  void upload();
+  [[nodiscard]] Box3 scene_box() const;
+  [[nodiscard]] Marks make_marks();
+  [[nodiscard]] Overlay make_overlay() const;
+  [[nodiscard]] CanvasView canvas_view(int width, int height, double ratio) const;
+  void paint_texts(QPainter& painter) const;
+  void paint_empty(QPainter& painter) const;
+  void paint_legend(QPainter& painter) const;
+  [[nodiscard]] PolygonMesh shown_cage() const;
+  void refresh_graph();
+  [[nodiscard]] const Picker& picker();
+  void camera_moved();
+  void model_changed();
+
+  // The mouse
+  void click(const Press& press);
+  void finish_outline(Qt::KeyboardModifiers modifiers);
+  void hover(const Pixel& cursor);
+  void forget_hover();
+  [[nodiscard]] std::vector<Pixel> outline() const;
+  [[nodiscard]] PickOptions pick_options() const;
+  [[nodiscard]] Selection selection_of(const Pick& pick) const;
+
+  // Transformations
+  [[nodiscard]] TransformKind tool_kind() const;
+  [[nodiscard]] bool has_gizmo_tool() const;
+  void apply_drag();
+  void end_drag();
+  bool drag_key(QKeyEvent* event);
+  bool camera_key(QKeyEvent* event);
+  bool edit_key(QKeyEvent* event);
+  void update_caption();
+
+  Editor& editor_;
+  Document& document_;
+  OrbitCamera camera_;
+  Theme theme_ = Theme::light();
+  bool framed_ = false; // something was framed since the viewport was empty
+
+  std::unique_ptr<Canvas> canvas_;
+  QString failure_; // of OpenGL
+  Dirty dirty_;
+  std::vector<FaceMark> voxels_;
+  bool with_texts_ = true;
+
+  CageGraph graph_;
+  bool graph_is_stale_ = true;
+  std::optional<Picker> picker_;
+
+  Gesture gesture_ = Gesture::none;
+  bool box_armed_ = false; // by the key B
+  Press press_;
+  Pixel cursor_ = Pixel::Zero();
+  std::vector<Pixel> lasso_;
+  std::optional<Pick> hovered_;
+  Handle hovered_handle_ = Handle::none;
+
+  TransformDrag drag_;
+  TransformTarget target_;
+  std::vector<Index> moving_; // the vertices handed to the editor
+  QString caption_;
 };
 
 } // namespace cagewright::app

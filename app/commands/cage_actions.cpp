@@ -1,0 +1,161 @@
+#include "app/commands/cage_actions.h"
+
+#include "app/edit/edit_cage.h"
+
+#include <utility>
+
+namespace cagewright::app {
+namespace {
+
+// Mirror images may be off by this fraction of the diagonal.
+constexpr double symmetry_tolerance = 1e-3;
+
+QString name_of(CageAction action) {
+  switch (action) {
+  case CageAction::split:
+    return Editor::tr("Split Edge");
+  case CageAction::split_ring:
+    return Editor::tr("Split Ring");
+  case CageAction::collapse:
+    return Editor::tr("Collapse");
+  case CageAction::flip:
+    return Editor::tr("Flip Edge");
+  case CageAction::subdivide:
+    return Editor::tr("Subdivide");
+  case CageAction::remove:
+    return Editor::tr("Delete");
+  case CageAction::extrude:
+    return Editor::tr("Extrude");
+  default:
+    return Editor::tr("Select");
+  }
+}
+
+Selection with_mirror_images(const Document& document, const CageGraph& graph) {
+  const std::optional<Symmetry> symmetry = cage_symmetry(document);
+  return symmetry ? mirrored(document.selection(), symmetry->partner, graph, true)
+                  : document.selection();
+}
+
+Selection selected_anew(CageAction action, const Document& document, const CageGraph& graph) {
+  const Selection& now = document.selection();
+  switch (action) {
+  case CageAction::select_all:
+    return select_all(now.mode, graph);
+  case CageAction::select_none: {
+    Selection none;
+    none.mode = now.mode;
+    return none;
+  }
+  case CageAction::invert:
+    return inverted(now, graph);
+  case CageAction::grow:
+    return grown(now, graph);
+  case CageAction::shrink:
+    return shrunk(now, graph);
+  case CageAction::select_linked:
+    return linked(now, graph);
+  case CageAction::select_loop:
+    return combined(now, loops(now, graph), Combine::add);
+  case CageAction::select_ring:
+    return combined(now, rings(now, graph), Combine::add);
+  case CageAction::mirror_selection:
+    return with_mirror_images(document, graph);
+  case CageAction::vertex_mode:
+    return converted(now, SelectionMode::vertex, graph);
+  case CageAction::edge_mode:
+    return converted(now, SelectionMode::edge, graph);
+  case CageAction::face_mode:
+    return converted(now, SelectionMode::face, graph);
+  default:
+    return now;
+  }
+}
+
+Error wrong_selection(const char* what) {
+  return {ErrorCode::invalid_cage, what};
+}
+
+Result<EditedCage> edited(CageAction action, const PolygonMesh& cage, const Selection& selection,
+                          const CageGraph& graph) {
+  const Selection edges = converted(selection, SelectionMode::edge, graph);
+  const Selection faces = converted(selection, SelectionMode::face, graph);
+  switch (action) {
+  case CageAction::split:
+    return selection.mode == SelectionMode::face ? subdivide_faces(cage, faces.faces)
+                                                 : split_edges(cage, edges.edges);
+  case CageAction::split_ring:
+    if (edges.edges.size() != 1) {
+      return wrong_selection("select one edge to split its ring");
+    }
+    return split_ring(cage, edges.edges[0]);
+  case CageAction::collapse:
+    return collapse_edges(cage, edges.edges);
+  case CageAction::flip:
+    if (edges.edges.size() != 1) {
+      return wrong_selection("select one edge to flip");
+    }
+    return flip_edge(cage, edges.edges[0]);
+  case CageAction::subdivide:
+    return subdivide_faces(cage, faces.faces);
+  case CageAction::remove:
+    return delete_elements(cage, selection);
+  case CageAction::extrude:
+    return extrude_faces(cage, faces.faces, extrusion_offset(cage, faces.faces));
+  default:
+    return wrong_selection("nothing to do");
+  }
+}
+
+} // namespace
+
+bool changes_topology(CageAction action) {
+  return action >= CageAction::split;
+}
+
+std::optional<Symmetry> cage_symmetry(const Document& document) {
+  if (!document.has_cage()) {
+    return std::nullopt;
+  }
+  const std::span<const Vec3> positions = document.mode() == Mode::refine
+                                              ? document.cage_positions()
+                                              : std::span(document.cage_rest().positions);
+  return find_symmetry(positions, document.tools().symmetry_axis,
+                       symmetry_tolerance * document.diagonal());
+}
+
+bool perform(CageAction action, Editor& editor) {
+  Document& document = editor.document();
+  if (!document.has_cage() || editor.moving()) {
+    return false;
+  }
+  const PolygonMesh cage = document.cage();
+  const CageGraph graph(cage);
+  if (!changes_topology(action)) {
+    if (action == CageAction::mirror_selection && !cage_symmetry(document)) {
+      Q_EMIT editor.message(Editor::tr("the cage is not symmetric about that plane"));
+      return false;
+    }
+    const Selection before = document.selection();
+    editor.select(selected_anew(action, document, graph));
+    return !(document.selection() == before);
+  }
+  if (document.mode() != Mode::refine) {
+    Q_EMIT editor.message(
+        Editor::tr("the model is bound to this cage; go back to refining to change its faces"));
+    return false;
+  }
+  Selection selection = document.selection();
+  if (document.tools().symmetric) {
+    selection = with_mirror_images(document, graph);
+  }
+  Result<EditedCage> result = edited(action, cage, selection, graph);
+  if (!result) {
+    Q_EMIT editor.message(QString::fromStdString(result.error().message));
+    return false;
+  }
+  editor.edit_topology(std::move(result->mesh), std::move(result->selection), name_of(action));
+  return true;
+}
+
+} // namespace cagewright::app

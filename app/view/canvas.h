@@ -1,0 +1,106 @@
+/// \file
+/// Draws the viewport with OpenGL 3.3: a model, translucent faces, lines and dots. Knows neither Qt
+/// nor the document. Needs a current context in every function, and where it is destroyed.
+#pragma once
+
+#include "core/geometry.h"
+#include "core/result.h"
+#include "mesh/triangle_mesh.h"
+#include "render/palette.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace cagewright::app {
+
+/// Red, green, blue, opacity; sRGB.
+using Color = std::array<std::uint8_t, 4>;
+
+Color color_of(const Rgb& rgb, double opacity = 1);
+Color faded(Color color, double opacity);
+
+struct LineMark {
+  Vec3 begin, end;
+  Color color;
+  float width = 1.5F; ///< logical pixels
+};
+
+struct DotMark {
+  Vec3 position;
+  Color color;
+  float radius = 3; ///< logical pixels
+};
+
+struct FaceMark {
+  std::array<Vec3, 3> corners;
+  std::array<Color, 3> colors;
+};
+
+/// What is drawn besides the model, in the model's coordinates.
+struct Marks {
+  std::vector<FaceMark> solids; ///< opaque
+  std::vector<FaceMark> faces;  ///< translucent, in any order
+  std::vector<LineMark> lines;  ///< hidden by the model, then faint
+  std::vector<DotMark> dots;    ///< likewise
+  std::vector<LineMark> ground; ///< hidden by the model altogether
+};
+
+/// What is drawn last, before everything, in logical pixels (z is ignored).
+struct Overlay {
+  std::vector<FaceMark> faces;
+  std::vector<LineMark> lines;
+  std::vector<DotMark> dots;
+};
+
+struct CanvasView {
+  /// From (p - center) * scale to clip coordinates: of OrbitCamera::clip_matrix().
+  Eigen::Matrix4d clip = Eigen::Matrix4d::Identity();
+  Mat3 axes = Mat3::Identity(); ///< rows: right, up, backward
+  int width = 1;                ///< device pixels
+  int height = 1;
+  double pixel_ratio = 1; ///< device pixels in a logical one
+  bool model = true;
+  bool smooth = true;
+  bool wireframe = false;
+  double model_opacity_behind = 0.16; ///< of marks that the model hides
+  Rgb background_top = {0.93F, 0.94F, 0.95F};
+  Rgb background_bottom = {0.80F, 0.82F, 0.85F};
+  Rgb model_color = {0.74F, 0.71F, 0.67F};
+  Rgb wire_color = {0.15F, 0.15F, 0.17F};
+};
+
+class Canvas {
+public:
+  /// Errors: not_available, when the driver refuses a shader.
+  static Result<std::unique_ptr<Canvas>> create();
+  ~Canvas();
+
+  /// Positions go to the graphics card as (p - center) * scale.
+  void set_frame(const Vec3& center, double scale);
+  [[nodiscard]] const Vec3& center() const { return center_; }
+  [[nodiscard]] double scale() const { return scale_; }
+
+  /// Another model: V positions, V unit normals, T triangles. Empty: none.
+  void set_model(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                 std::span<const Triangle> triangles);
+  /// The same triangles elsewhere.
+  void move_model(std::span<const Vec3> positions, std::span<const Vec3> normals);
+  /// V colours instead of one; empty: one.
+  void set_model_colors(std::span<const Color> colors);
+
+  /// Draws to the framebuffer that is bound.
+  void draw(const CanvasView& view, const Marks& marks, const Overlay& overlay);
+
+private:
+  struct Gl;
+  explicit Canvas(std::unique_ptr<Gl> gl);
+
+  std::unique_ptr<Gl> gl_;
+  Vec3 center_ = Vec3::Zero();
+  double scale_ = 1;
+};
+
+} // namespace cagewright::app

@@ -1,0 +1,220 @@
+/// \file
+/// The viewport's programs for the graphics card, in GLSL. Private to canvas.cpp.
+#pragma once
+
+namespace cagewright::app::shaders {
+
+inline constexpr const char* background_vertex = R"(
+out vec2 uv;
+void main() {
+  uv = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2;
+  gl_Position = vec4(uv * 2 - 1, 0.999999, 1);
+}
+)";
+
+inline constexpr const char* background_fragment = R"(
+in vec2 uv;
+uniform vec3 top;
+uniform vec3 bottom;
+out vec4 color;
+void main() {
+  // A little noise, so that the gradient shows no steps.
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  color = vec4(mix(bottom, top, smoothstep(0.0, 1.0, uv.y)) + (noise - 0.5) / 255, 1);
+}
+)";
+
+inline constexpr const char* light = R"(
+uniform mat3 axes;
+// A main light from the upper left, a fill from the right, the sky; n towards the viewer.
+vec3 lit(vec3 base, vec3 n) {
+  float key = max(0.0, dot(n, normalize(vec3(-0.45, 0.65, 0.62))));
+  float fill = max(0.0, dot(n, normalize(vec3(0.8, 0.05, 0.45))));
+  vec3 sky = mix(vec3(0.30, 0.28, 0.27), vec3(0.44, 0.46, 0.50), 0.5 + 0.5 * n.y);
+  vec3 light = sky + 0.62 * key * vec3(1.0, 0.98, 0.94) + 0.14 * fill * vec3(0.85, 0.9, 1.0);
+  float gloss = pow(max(0.0, dot(n, normalize(vec3(-0.25, 0.38, 0.9)))), 40.0);
+  return base * light + 0.07 * gloss;
+}
+)";
+
+inline constexpr const char* model_vertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 normal;
+layout(location = 2) in vec4 color;
+uniform mat4 clip;
+uniform mat3 axes;
+uniform vec4 one_color; // opacity 0: each vertex has its own
+out vec3 view_normal;
+out vec3 place;
+out vec3 base;
+void main() {
+  view_normal = axes * normal.xyz;
+  place = axes * position;
+  base = one_color.a > 0 ? one_color.rgb : color.rgb;
+  gl_Position = clip * vec4(position, 1);
+}
+)";
+
+inline constexpr const char* model_fragment = R"(
+in vec3 view_normal;
+in vec3 place;
+in vec3 base;
+uniform int smooth_normals;
+out vec4 color;
+void main() {
+  vec3 flat_normal = normalize(cross(dFdx(place), dFdy(place)));
+  vec3 n = smooth_normals != 0 && dot(view_normal, view_normal) > 0.25 ? normalize(view_normal)
+                                                                        : flat_normal;
+  if (dot(n, flat_normal) < 0) { // the back of the surface
+    n = -n;
+  }
+  color = vec4(lit(base, n), 1);
+}
+)";
+
+inline constexpr const char* wire_vertex = R"(
+layout(location = 0) in vec3 position;
+uniform mat4 clip;
+void main() {
+  gl_Position = clip * vec4(position, 1);
+  gl_Position.z -= 2e-5 * gl_Position.w;
+}
+)";
+
+inline constexpr const char* wire_fragment = R"(
+uniform vec4 one_color;
+out vec4 color;
+void main() { color = one_color; }
+)";
+
+inline constexpr const char* face_vertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 color;
+uniform mat4 clip;
+uniform mat3 axes;
+out vec3 place;
+out vec4 srgb;
+void main() {
+  place = axes * position;
+  srgb = color;
+  gl_Position = clip * vec4(position, 1);
+}
+)";
+
+/// kind 0: lit and opaque; 1: like tinted glass; 2: as it is.
+inline constexpr const char* face_fragment = R"(
+in vec3 place;
+in vec4 srgb;
+uniform int kind;
+out vec4 color;
+void main() {
+  if (kind == 2) {
+    color = vec4(srgb.rgb * srgb.a, srgb.a);
+    return;
+  }
+  vec3 n = normalize(cross(dFdx(place), dFdy(place)));
+  if (kind == 0) {
+    color = vec4(lit(srgb.rgb, n), 1);
+    return;
+  }
+  float alpha = srgb.a * (gl_FrontFacing ? 1.0 : 0.5);
+  color = vec4(mix(srgb.rgb, lit(srgb.rgb, n) * 1.1, 0.5) * alpha, alpha);
+}
+)";
+
+/// A line as a strip of four corners, a pixel wider than it, for its smooth rim.
+inline constexpr const char* line_vertex = R"(
+layout(location = 0) in vec3 begin;
+layout(location = 1) in vec3 end;
+layout(location = 2) in vec4 color;
+layout(location = 3) in float width;
+uniform mat4 clip;
+uniform vec2 frame; // device pixels
+uniform float pixel_ratio;
+uniform float bias;
+noperspective out float across;
+flat out float radius;
+flat out vec4 srgb;
+void main() {
+  vec4 p = clip * vec4(begin, 1);
+  vec4 q = clip * vec4(end, 1);
+  float before_p = p.z + p.w; // of the near plane
+  float before_q = q.z + q.w;
+  if (before_p < 0 && before_q < 0) {
+    gl_Position = vec4(2, 2, 2, 1);
+    return;
+  }
+  if (before_p < 0) {
+    p = mix(p, q, before_p / (before_p - before_q));
+  } else if (before_q < 0) {
+    q = mix(q, p, before_q / (before_q - before_p));
+  }
+  vec2 a = p.xy / p.w * frame / 2;
+  vec2 b = q.xy / q.w * frame / 2;
+  vec2 along = length(b - a) > 1e-4 ? normalize(b - a) : vec2(1, 0);
+  radius = 0.5 * width * pixel_ratio;
+  across = (gl_VertexID & 2) == 0 ? -(radius + 1) : radius + 1;
+  bool first = (gl_VertexID & 1) == 0;
+  vec2 shift = across * vec2(-along.y, along.x) + (first ? -0.5 : 0.5) * along;
+  gl_Position = first ? p : q;
+  gl_Position.xy += shift * 2 / frame * gl_Position.w;
+  gl_Position.z -= bias * gl_Position.w;
+  srgb = color;
+}
+)";
+
+inline constexpr const char* line_fragment = R"(
+noperspective in float across;
+flat in float radius;
+flat in vec4 srgb;
+uniform float strength;
+out vec4 color;
+void main() {
+  float alpha = srgb.a * strength * clamp(radius + 0.5 - abs(across), 0.0, 1.0);
+  if (alpha < 0.004) {
+    discard;
+  }
+  color = vec4(srgb.rgb * alpha, alpha);
+}
+)";
+
+inline constexpr const char* dot_vertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 color;
+layout(location = 2) in float size;
+uniform mat4 clip;
+uniform vec2 frame;
+uniform float pixel_ratio;
+uniform float bias;
+noperspective out vec2 offset;
+flat out float radius;
+flat out vec4 srgb;
+void main() {
+  vec4 p = clip * vec4(position, 1);
+  radius = size * pixel_ratio;
+  offset = (radius + 1.5) * (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2 - 1);
+  gl_Position = p.z + p.w < 0 ? vec4(2, 2, 2, 1) : p;
+  gl_Position.xy += offset * 2 / frame * gl_Position.w;
+  gl_Position.z -= bias * gl_Position.w;
+  srgb = color;
+}
+)";
+
+inline constexpr const char* dot_fragment = R"(
+noperspective in vec2 offset;
+flat in float radius;
+flat in vec4 srgb;
+uniform float strength;
+out vec4 color;
+void main() {
+  float distance = length(offset);
+  float alpha = srgb.a * strength * clamp(radius + 0.5 - distance, 0.0, 1.0);
+  if (alpha < 0.004) {
+    discard;
+  }
+  float rim = clamp(distance - radius + 1.7, 0.0, 1.0); // a darker outline
+  color = vec4(srgb.rgb * mix(1.0, 0.55, rim) * alpha, alpha);
+}
+)";
+
+} // namespace cagewright::app::shaders

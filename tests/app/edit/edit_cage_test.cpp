@@ -1,0 +1,253 @@
+#include "app/edit/edit_cage.h"
+
+#include "app/edit/cage_graph.h"
+#include "app/edit/select.h"
+#include "core/random.h"
+#include "mesh/measures.h"
+#include "mesh/shapes.h"
+#include "mesh/triangulate.h"
+#include "quads.h"
+#include "validate/validate_cage.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace cagewright::app {
+namespace {
+
+using test::is_sound;
+using test::quad_cube;
+using test::quad_torus;
+
+double volume(const PolygonMesh& mesh) {
+  return signed_volume(to_triangle_mesh(mesh));
+}
+
+EdgeVertices random_edge(const PolygonMesh& mesh, Random& random) {
+  const CageGraph graph(mesh);
+  return graph.edge(static_cast<Index>(random.below(graph.edge_count())));
+}
+
+std::vector<Index> random_faces(const PolygonMesh& mesh, Random& random) {
+  std::vector<Index> faces;
+  for (std::uint64_t n = 1 + random.below(3); n-- > 0;) {
+    faces.push_back(static_cast<Index>(random.below(mesh.face_count())));
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+Selection random_selection(const PolygonMesh& mesh, Random& random) {
+  Selection s;
+  s.mode = static_cast<SelectionMode>(random.below(3));
+  if (s.mode == SelectionMode::vertex) {
+    s.vertices = {static_cast<Index>(random.below(mesh.positions.size()))};
+  } else if (s.mode == SelectionMode::edge) {
+    s.edges = {random_edge(mesh, random)};
+  } else {
+    s.faces = random_faces(mesh, random);
+  }
+  return s;
+}
+
+void expect_maps_agree(const PolygonMesh& before, const EditedCage& after) {
+  ASSERT_EQ(after.new_of_old.size(), before.positions.size());
+  ASSERT_EQ(after.old_of_new.size(), after.mesh.positions.size());
+  for (Index v = 0; v < after.old_of_new.size(); ++v) {
+    if (after.old_of_new[v] != EditedCage::none) {
+      EXPECT_EQ(after.new_of_old[after.old_of_new[v]], v);
+    }
+  }
+  for (Index v = 0; v < after.new_of_old.size(); ++v) {
+    if (after.new_of_old[v] != EditedCage::none) {
+      EXPECT_EQ(after.old_of_new[after.new_of_old[v]], v);
+    }
+  }
+}
+
+TEST(EditCage, StaysClosedManifoldAndOrientedWhateverIsDone) {
+  Random random(13);
+  const std::vector<PolygonMesh> starts = {quad_cube(2), quad_torus(8, 5),
+                                           PolygonMesh(make_icosphere(1)),
+                                           PolygonMesh(make_tetrahedron())};
+  std::array<int, 7> done = {};
+  for (const PolygonMesh& start : starts) {
+    for (int sequence = 0; sequence < 6; ++sequence) {
+      PolygonMesh mesh = start;
+      const long genus = *topology(start).genus;
+      for (int i = 0; i < 40; ++i) {
+        const auto kind = random.below(7);
+        const EdgeVertices edge = random_edge(mesh, random);
+        const std::vector<Index> faces = random_faces(mesh, random);
+        Result<EditedCage> edited = kind == 0   ? split_edges(mesh, std::span(&edge, 1))
+                                    : kind == 1 ? collapse_edges(mesh, std::span(&edge, 1))
+                                    : kind == 2 ? flip_edge(mesh, edge)
+                                    : kind == 3 ? subdivide_faces(mesh, faces)
+                                    : kind == 4
+                                        ? delete_elements(mesh, random_selection(mesh, random))
+                                    : kind == 5 ? extrude_faces(mesh, faces, 0.1)
+                                                : split_ring(mesh, edge);
+        if (!edited) {
+          EXPECT_FALSE(edited.error().message.empty());
+          continue;
+        }
+        ++done[kind];
+        ASSERT_TRUE(is_sound(edited->mesh)) << "after kind " << kind;
+        EXPECT_EQ(*topology(edited->mesh).genus, genus);
+        expect_maps_agree(mesh, *edited);
+        mesh = std::move(edited->mesh);
+        if (mesh.face_count() > 300) {
+          mesh = start;
+        }
+      }
+    }
+  }
+  for (const int count : done) {
+    EXPECT_GT(count, 20) << "each kind of edit was tried";
+  }
+}
+
+TEST(EditCage, SplittingAndSubdividingLeaveTheShapeAsItIs) {
+  Random random(14);
+  for (const PolygonMesh& mesh : {quad_cube(2), PolygonMesh(make_icosphere(1))}) {
+    for (int i = 0; i < 30; ++i) {
+      const EdgeVertices edge = random_edge(mesh, random);
+      for (const Result<EditedCage>& edited :
+           {split_edges(mesh, std::span(&edge, 1)), split_ring(mesh, edge),
+            subdivide_faces(mesh, random_faces(mesh, random))}) {
+        ASSERT_TRUE(edited);
+        EXPECT_NEAR(volume(edited->mesh), volume(mesh), 1e-12);
+        EXPECT_TRUE(validate_cage(edited->mesh, TriangleView{})->valid())
+            << "no three corners on a line";
+        EXPECT_GT(edited->mesh.face_count(), mesh.face_count());
+      }
+    }
+  }
+}
+
+TEST(EditCage, RingsOfQuadsStayQuads) {
+  const PolygonMesh torus = quad_torus(8, 5);
+  const Result<EditedCage> edited = split_ring(torus, {0, 1});
+  ASSERT_TRUE(edited);
+  EXPECT_EQ(edited->mesh.face_count(), torus.face_count() + 8);
+  EXPECT_EQ(edited->mesh.positions.size(), torus.positions.size() + 8);
+  for (std::size_t f = 0; f < edited->mesh.face_count(); ++f) {
+    EXPECT_EQ(edited->mesh.face(f).size(), 4U);
+  }
+  EXPECT_EQ(edited->selection.edges.size(), 8U) << "the new loop is selected";
+}
+
+TEST(EditCage, SubdividedFacesStayWhatTheyAre) {
+  const PolygonMesh cube = quad_cube();
+  const std::vector<Index> all = {0, 1, 2, 3, 4, 5};
+  const Result<EditedCage> quads = subdivide_faces(cube, all);
+  ASSERT_TRUE(quads);
+  EXPECT_EQ(quads->mesh.face_count(), 24U);
+  EXPECT_EQ(quads->mesh.positions.size(), 26U);
+  const PolygonMesh tetrahedron(make_tetrahedron());
+  const std::vector<Index> four = {0, 1, 2, 3};
+  const Result<EditedCage> triangles = subdivide_faces(tetrahedron, four);
+  ASSERT_TRUE(triangles);
+  EXPECT_EQ(triangles->mesh.face_count(), 16U);
+  EXPECT_EQ(triangles->mesh.positions.size(), 10U);
+}
+
+TEST(EditCage, FlippingTrianglesTwiceIsTheSameEdgeAgain) {
+  const PolygonMesh ball(make_icosphere(1));
+  const EdgeVertices edge = CageGraph(ball).edge(10);
+  const Result<EditedCage> once = flip_edge(ball, edge);
+  ASSERT_TRUE(once);
+  ASSERT_EQ(once->selection.edges.size(), 1U);
+  EXPECT_FALSE(CageGraph(once->mesh).find_edge(edge[0], edge[1]));
+  const Result<EditedCage> twice = flip_edge(once->mesh, once->selection.edges[0]);
+  ASSERT_TRUE(twice);
+  EXPECT_EQ(twice->selection.edges[0], edge);
+}
+
+TEST(EditCage, RefusesWhatWouldPinchAndSaysWhy) {
+  const PolygonMesh tetrahedron(make_tetrahedron());
+  const EdgeVertices edge = {0, 1};
+  const Result<EditedCage> collapsed = collapse_edges(tetrahedron, std::span(&edge, 1));
+  ASSERT_FALSE(collapsed);
+  EXPECT_EQ(collapsed.error().code, ErrorCode::invalid_cage);
+  EXPECT_FALSE(flip_edge(tetrahedron, edge)) << "the other diagonal exists";
+  const std::vector<Index> all = {0, 1, 2, 3};
+  EXPECT_FALSE(extrude_faces(tetrahedron, all, 0.1));
+  EXPECT_FALSE(extrude_faces(tetrahedron, std::span(all).first(1), 0));
+  EXPECT_FALSE(delete_elements(tetrahedron, {}));
+  const EdgeVertices no_edge = {0, 77};
+  EXPECT_FALSE(split_edges(tetrahedron, std::span(&no_edge, 1)));
+}
+
+TEST(EditCage, RefusesToWorkOnAnOpenMesh) {
+  PolygonMesh open;
+  open.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  open.add_face({0, 1, 2});
+  const EdgeVertices edge = {0, 1};
+  EXPECT_FALSE(split_edges(open, std::span(&edge, 1)));
+}
+
+TEST(EditCage, DeletingAVertexTakesJustThatVertex) {
+  const PolygonMesh ball(make_icosphere(1));
+  Selection s;
+  s.vertices = {7, 20};
+  const Result<EditedCage> edited = delete_elements(ball, s);
+  ASSERT_TRUE(edited);
+  EXPECT_EQ(edited->mesh.positions.size(), ball.positions.size() - 2);
+  EXPECT_EQ(edited->new_of_old[7], EditedCage::none);
+  EXPECT_EQ(edited->new_of_old[20], EditedCage::none);
+  EXPECT_EQ(edited->new_of_old[6], 6U);
+}
+
+TEST(EditCage, DeletingADiagonalMakesAQuad) {
+  const PolygonMesh cube(make_cube());
+  Selection s;
+  s.mode = SelectionMode::edge;
+  const CageGraph graph(cube);
+  for (const EdgeVertices& e : graph.edges()) {
+    if ((cube.positions[e[0]] - cube.positions[e[1]]).norm() > 2.5) {
+      s.edges.push_back(e);
+    }
+  }
+  ASSERT_EQ(s.edges.size(), 6U);
+  const Result<EditedCage> edited = delete_elements(cube, s);
+  ASSERT_TRUE(edited) << edited.error().message;
+  EXPECT_EQ(edited->mesh.face_count(), 6U);
+  EXPECT_NEAR(volume(edited->mesh), 8, 1e-12);
+}
+
+TEST(EditCage, ExtrudingAddsThePrism) {
+  const PolygonMesh cube = quad_cube(2);
+  std::vector<Index> top;
+  for (Index f = 0; f < cube.face_count(); ++f) {
+    const auto face = cube.face(f);
+    if (std::all_of(face.begin(), face.end(),
+                    [&](Index v) { return cube.positions[v].z() == 1; })) {
+      top.push_back(f);
+    }
+  }
+  ASSERT_EQ(top.size(), 4U);
+  const Result<EditedCage> edited = extrude_faces(cube, top, 0.5);
+  ASSERT_TRUE(edited);
+  EXPECT_NEAR(volume(edited->mesh), 8 + 4 * 0.5, 1e-12);
+  EXPECT_EQ(edited->mesh.face_count(), cube.face_count() + 8);
+  EXPECT_EQ(edited->selection.faces, top) << "what was raised is selected";
+  EXPECT_TRUE(validate_cage(edited->mesh, TriangleView{})->valid());
+}
+
+TEST(EditCage, KeepsGroups) {
+  PolygonMesh cube = quad_cube();
+  cube.group_names = {"a", "b"};
+  cube.face_groups = {0, 1, 0, 1, 0, 1};
+  const std::vector<Index> faces = {1};
+  const Result<EditedCage> edited = subdivide_faces(cube, faces);
+  ASSERT_TRUE(edited);
+  EXPECT_EQ(edited->mesh.group_names, cube.group_names);
+  ASSERT_EQ(edited->mesh.face_groups.size(), edited->mesh.face_count());
+  EXPECT_GE(std::count(edited->mesh.face_groups.begin(), edited->mesh.face_groups.end(), 1U), 4);
+}
+
+} // namespace
+} // namespace cagewright::app
