@@ -68,7 +68,7 @@ Vec3 on_screen(const Pixel& p) {
 
 } // namespace
 
-Theme Theme::light() {
+ViewColors ViewColors::light() {
   return {.top = {0.945F, 0.950F, 0.955F},
           .bottom = {0.815F, 0.830F, 0.850F},
           .model = {0.76F, 0.725F, 0.675F},
@@ -82,7 +82,7 @@ Theme Theme::light() {
           .text = {0.16F, 0.18F, 0.22F}};
 }
 
-Theme Theme::dark() {
+ViewColors ViewColors::dark() {
   return {.top = {0.230F, 0.240F, 0.255F},
           .bottom = {0.125F, 0.130F, 0.140F},
           .model = {0.66F, 0.635F, 0.60F},
@@ -116,8 +116,8 @@ Rgb axis_color(int axis) {
 }
 
 void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph& graph,
-              const OrbitCamera& camera, const Theme& theme, const std::optional<Pick>& hovered,
-              Marks& marks) {
+              const OrbitCamera& camera, const ViewColors& colors,
+              const std::optional<Pick>& hovered, Marks& marks) {
   const Layers& layers = document.layers();
   const Selection& selection = document.selection();
   const std::span<const Index> offending = document.offending_faces();
@@ -148,10 +148,10 @@ void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph
     if (!layers.cage_faces && !is_marked) {
       continue;
     }
-    const Color color = bad[f] != 0             ? color_of(theme.bad, 0.55)
-                        : selected_face[f] != 0 ? color_of(theme.selected, is_hovered ? 0.6 : 0.45)
-                        : is_hovered            ? color_of(theme.hovered, 0.3)
-                                                : color_of(theme.cage_face, 0.15);
+    const Color color = bad[f] != 0             ? color_of(colors.bad, 0.55)
+                        : selected_face[f] != 0 ? color_of(colors.selected, is_hovered ? 0.6 : 0.45)
+                        : is_hovered            ? color_of(colors.hovered, 0.3)
+                                                : color_of(colors.cage_face, 0.15);
     FaceMark mark{{}, {color, color, color}};
     for (int k = 0; k < 3; ++k) {
       const Index v = cut.triangles[t][k];
@@ -193,10 +193,10 @@ void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph
     if (!layers.cage_edges && !is_selected && !is_hovered && !is_bad) {
       continue;
     }
-    const Rgb rgb = is_hovered    ? theme.hovered
-                    : is_selected ? theme.selected
-                    : is_bad      ? theme.bad
-                                  : theme.cage;
+    const Rgb rgb = is_hovered    ? colors.hovered
+                    : is_selected ? colors.selected
+                    : is_bad      ? colors.bad
+                                  : colors.cage;
     LineMark line{cage.positions[edge[0]], cage.positions[edge[1]],
                   color_of(rgb, front ? 0.95 : behind), front ? 1.7F : 1.2F};
     if (is_selected || is_hovered) {
@@ -220,21 +220,22 @@ void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph
     const double strength = front_vertex[v] != 0 ? 1 : behind;
     if (is_selected || is_hovered) {
       raised_dots.push_back({cage.positions[v],
-                             color_of(is_hovered && !is_selected ? theme.hovered : theme.selected,
+                             color_of(is_hovered && !is_selected ? colors.hovered : colors.selected,
                                       std::max(strength, 0.6)),
                              is_hovered ? 5.8F : 4.8F});
     } else if (!small_dots) {
-      marks.dots.push_back({cage.positions[v], color_of(theme.cage, strength), 3.4F});
+      marks.dots.push_back({cage.positions[v], color_of(colors.cage, strength), 3.4F});
     }
   }
   marks.dots.insert(marks.dots.end(), raised_dots.begin(), raised_dots.end());
 }
 
-void add_rest(const Document& document, const CageGraph& graph, const Theme& theme, Marks& marks) {
+void add_rest(const Document& document, const CageGraph& graph, const ViewColors& colors,
+              Marks& marks) {
   const std::vector<Vec3>& rest = document.cage_rest().positions;
   for (const EdgeVertices& e : graph.edges()) {
     if (e[1] < rest.size()) {
-      marks.lines.push_back({rest[e[0]], rest[e[1]], color_of(theme.text, 0.28), 1.2F});
+      marks.lines.push_back({rest[e[0]], rest[e[1]], color_of(colors.text, 0.28), 1.2F});
     }
   }
 }
@@ -323,20 +324,21 @@ std::vector<FaceMark> voxel_faces(const BoxDecomposition& stages, bool feature, 
   return faces;
 }
 
-void add_problems(const Document& document, const Theme& theme, Marks& marks) {
+void add_problems(const Document& document, const ViewColors& colors, Marks& marks) {
   const CageCheck& check = document.check();
   if (!check.report) {
     return;
   }
   for (const Violation& v : check.report->violations) {
     if (v.place.allFinite() && v.kind != ViolationKind::no_faces) {
-      marks.dots.push_back({v.place, color_of(theme.bad, 0.25), 9});
-      marks.dots.push_back({v.place, color_of(theme.bad), 4});
+      marks.dots.push_back({v.place, color_of(colors.bad, 0.25), 9});
+      marks.dots.push_back({v.place, color_of(colors.bad), 4});
     }
   }
 }
 
-void add_grid(const Box3& bounds, const OrbitCamera& camera, const Theme& theme, Marks& marks) {
+void add_grid(const Box3& bounds, const OrbitCamera& camera, const ViewColors& colors,
+              Marks& marks) {
   if (bounds.isEmpty()) {
     return;
   }
@@ -364,7 +366,7 @@ void add_grid(const Box3& bounds, const OrbitCamera& camera, const Theme& theme,
         a[along_u ? v : u] = b[along_u ? v : u] = ((along_u ? v0 : u0) + i) * step;
         const double r = std::hypot(i, j + 0.5) / reach;
         if (r < 1) {
-          marks.ground.push_back({a, b, color_of(theme.grid, 0.5 * (1 - r * r)), 1.0F});
+          marks.ground.push_back({a, b, color_of(colors.grid, 0.5 * (1 - r * r)), 1.0F});
         }
       }
     }

@@ -15,10 +15,10 @@
 namespace cagewright::app {
 
 /// The colours of the viewport.
-struct Theme {
+struct ViewColors {
   Rgb top, bottom, model, wire, cage, cage_face, selected, hovered, bad, grid, text;
-  static Theme light();
-  static Theme dark();
+  static ViewColors light();
+  static ViewColors dark();
 };
 
 /// A colour for a weight: blue below 0, grey at 0, to yellow at 1.
@@ -29,11 +29,12 @@ Color distance_color(float distance);
 /// The cage as it is shown: edges, faces, vertices, with what is selected, wrong, or under the
 /// cursor.
 void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph& graph,
-              const OrbitCamera& camera, const Theme& theme, const std::optional<Pick>& hovered,
-              Marks& marks);
+              const OrbitCamera& camera, const ViewColors& colors,
+              const std::optional<Pick>& hovered, Marks& marks);
 
 /// Where the cage is at rest.
-void add_rest(const Document& document, const CageGraph& graph, const Theme& theme, Marks& marks);
+void add_rest(const Document& document, const CageGraph& graph, const ViewColors& colors,
+              Marks& marks);
 
 /// Boxes and cuts of the stages.
 void add_boxes(const Document& document, Marks& marks);
@@ -41,9 +42,10 @@ void add_boxes(const Document& document, Marks& marks);
 /// The sides of voxels that no other shown voxel covers. Slow; keep the result.
 std::vector<FaceMark> voxel_faces(const BoxDecomposition& stages, bool feature, bool inner);
 
-void add_problems(const Document& document, const Theme& theme, Marks& marks);
+void add_problems(const Document& document, const ViewColors& colors, Marks& marks);
 
-void add_grid(const Box3& bounds, const OrbitCamera& camera, const Theme& theme, Marks& marks);
+void add_grid(const Box3& bounds, const OrbitCamera& camera, const ViewColors& colors,
+              Marks& marks);
 
 /// The gizmo on the screen.
 void add_gizmo(const OrbitCamera& camera, TransformKind kind, const GizmoFrame& frame,

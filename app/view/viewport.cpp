@@ -175,7 +175,7 @@ void Viewport::set_camera_state(const QJsonObject& state) {
 }
 
 void Viewport::set_dark(bool dark) {
-  theme_ = dark ? Theme::dark() : Theme::light();
+  colors_ = dark ? ViewColors::dark() : ViewColors::light();
   update();
 }
 
@@ -278,7 +278,7 @@ Marks Viewport::make_marks() {
   Marks marks;
   const Layers& layers = document_.layers();
   if (layers.grid) {
-    add_grid(scene_box(), camera_, theme_, marks);
+    add_grid(scene_box(), camera_, colors_, marks);
   }
   if (document_.stages()) {
     marks.solids = voxels_;
@@ -287,13 +287,13 @@ Marks Viewport::make_marks() {
   if (document_.has_cage()) {
     refresh_graph();
     if (layers.rest_cage && document_.mode() == Mode::deform) {
-      add_rest(document_, graph_, theme_, marks);
+      add_rest(document_, graph_, colors_, marks);
     }
     const bool hovers = with_texts_ && gesture_ == Gesture::none && !drag_.is_active();
-    add_cage(document_, shown_cage(), graph_, camera_, theme_, hovers ? hovered_ : std::nullopt,
+    add_cage(document_, shown_cage(), graph_, camera_, colors_, hovers ? hovered_ : std::nullopt,
              marks);
     if (layers.problems) {
-      add_problems(document_, theme_, marks);
+      add_problems(document_, colors_, marks);
     }
   }
   return marks;
@@ -365,7 +365,7 @@ Overlay Viewport::make_overlay() const {
           const double angle = 2 * M_PI * k / parts;
           return on_screen(middle->pixel + radius * Pixel(std::cos(angle), std::sin(angle)));
         };
-        overlay.lines.push_back({at(i), at(i + 1), color_of(theme_.text, 0.6), 1.3F});
+        overlay.lines.push_back({at(i), at(i + 1), color_of(colors_.text, 0.6), 1.3F});
       }
     }
   } else if (const std::optional<GizmoFrame> frame = gizmo();
@@ -375,7 +375,7 @@ Overlay Viewport::make_overlay() const {
   if (gesture_ == Gesture::box || gesture_ == Gesture::lasso) {
     const std::vector<Pixel> line = outline();
     if (gesture_ == Gesture::box) {
-      const Color fill = color_of(theme_.cage_face, 0.12);
+      const Color fill = color_of(colors_.cage_face, 0.12);
       const std::array<Vec3, 4> c = {on_screen(line[0]), on_screen(line[1]), on_screen(line[2]),
                                      on_screen(line[3])};
       overlay.faces.push_back({{c[0], c[1], c[2]}, {fill, fill, fill}});
@@ -383,11 +383,11 @@ Overlay Viewport::make_overlay() const {
     }
     for (std::size_t i = 0; i < line.size(); ++i) {
       overlay.lines.push_back({on_screen(line[i]), on_screen(line[(i + 1) % line.size()]),
-                               color_of(theme_.cage, 0.9), 1.2F});
+                               color_of(colors_.cage, 0.9), 1.2F});
     }
   }
   if (box_armed_ && gesture_ == Gesture::none) {
-    const Color color = color_of(theme_.text, 0.4);
+    const Color color = color_of(colors_.text, 0.4);
     overlay.lines.push_back({{cursor_.x(), 0, 0}, {cursor_.x(), camera_.height(), 0}, color, 1});
     overlay.lines.push_back({{0, cursor_.y(), 0}, {camera_.width(), cursor_.y(), 0}, color, 1});
   }
@@ -405,10 +405,10 @@ CanvasView Viewport::canvas_view(int width, int height, double ratio) const {
   view.model = layers.model;
   view.smooth = layers.smooth_normals;
   view.wireframe = layers.wireframe;
-  view.background_top = theme_.top;
-  view.background_bottom = theme_.bottom;
-  view.model_color = theme_.model;
-  view.wire_color = theme_.wire;
+  view.background_top = colors_.top;
+  view.background_bottom = colors_.bottom;
+  view.model_color = colors_.model;
+  view.wire_color = colors_.wire;
   return view;
 }
 
@@ -476,9 +476,8 @@ void Viewport::paint_texts(QPainter& painter) const {
     painter.drawText(box, Qt::AlignCenter, QString(QChar('X' + static_cast<int>(i))));
   }
   painter.setFont(small);
-  painter.setPen(qt(theme_.text, 0.85));
+  painter.setPen(qt(colors_.text, 0.85));
   if (!document_.has_model() && !document_.has_cage()) {
-    paint_empty(painter);
     return;
   }
   QString where = orthographic() ? tr("Orthographic") : tr("Perspective");
@@ -518,28 +517,6 @@ void Viewport::paint_texts(QPainter& painter) const {
   }
 }
 
-void Viewport::paint_empty(QPainter& painter) const {
-  QFont large = font();
-  large.setPointSizeF(large.pointSizeF() * 1.6);
-  large.setWeight(QFont::DemiBold);
-  const QPointF middle(width() / 2.0, height() / 2.0);
-  const double half = std::min(260.0, width() / 2.0 - 20);
-  const QRectF plate(middle.x() - half, middle.y() - 80, 2 * half, 160);
-  QPen dashes(qt(theme_.text, 0.35), 1.5, Qt::CustomDashLine);
-  dashes.setDashPattern({5, 4});
-  painter.setPen(dashes);
-  painter.setBrush(qt(theme_.top, 0.4));
-  painter.drawRoundedRect(plate, 14, 14);
-  painter.setPen(qt(theme_.text));
-  painter.setFont(large);
-  painter.drawText(plate.adjusted(16, 28, -16, -90), Qt::AlignCenter, tr("Drop a model here"));
-  painter.setFont(font());
-  painter.setPen(qt(theme_.text, 0.8));
-  painter.drawText(plate.adjusted(16, 68, -16, -14), Qt::AlignCenter | Qt::TextWordWrap,
-                   tr("or open one with Ctrl+O (OBJ, PLY, STL, OFF, glTF).\n"
-                      "Then press Generate to get a cage around it."));
-}
-
 void Viewport::paint_legend(QPainter& painter) const {
   const Layers& layers = document_.layers();
   const bool weights = layers.weights && !document_.model_weights().empty();
@@ -553,10 +530,10 @@ void Viewport::paint_legend(QPainter& painter) const {
     gradient.setColorAt(i / 10.0, qt(scale_color(i / 10.0)));
   }
   painter.save();
-  painter.setPen(QPen(qt(theme_.text, 0.5), 1));
+  painter.setPen(QPen(qt(colors_.text, 0.5), 1));
   painter.setBrush(gradient);
   painter.drawRect(bar);
-  painter.setPen(qt(theme_.text, 0.85));
+  painter.setPen(qt(colors_.text, 0.85));
   const QRectF above = bar.adjusted(-40, -20, 0, -12);
   painter.drawText(above, Qt::AlignRight | Qt::AlignVCenter,
                    weights ? tr("weight of the selection") : tr("distance to the model"));

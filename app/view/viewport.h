@@ -99,7 +99,6 @@ private:
   [[nodiscard]] Overlay make_overlay() const;
   [[nodiscard]] CanvasView canvas_view(int width, int height, double ratio) const;
   void paint_texts(QPainter& painter) const;
-  void paint_empty(QPainter& painter) const;
   void paint_legend(QPainter& painter) const;
   [[nodiscard]] PolygonMesh shown_cage() const;
   void refresh_graph();
@@ -129,7 +128,7 @@ private:
   Editor& editor_;
   Document& document_;
   OrbitCamera camera_;
-  Theme theme_ = Theme::light();
+  ViewColors colors_ = ViewColors::light();
   bool framed_ = false; // something was framed since the viewport was empty
 
   std::unique_ptr<Canvas> canvas_;

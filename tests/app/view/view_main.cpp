@@ -1,0 +1,14 @@
+// Tests in a window.
+#include <QApplication>
+#include <QDir>
+#include <QStandardPaths>
+
+#include <gtest/gtest.h>
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  QStandardPaths::setTestModeEnabled(true);
+  QApplication application(argc, argv);
+  QDir().mkpath(CAGEWRIGHT_SCREENSHOTS);
+  return RUN_ALL_TESTS();
+}
