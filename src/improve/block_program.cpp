@@ -13,7 +13,7 @@ using Vector = Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr int most_iterations = 25;
-constexpr double accuracy = 1e-6; // of the complementarity, relative to its start
+constexpr double accuracy = 1e-4; // of the complementarity, relative to its start
 
 class InteriorPoint {
 public:
@@ -49,7 +49,7 @@ public:
       if (mu <= accuracy * start &&
           primal.cwiseAbs().sum() <= 1e-4 * typical * static_cast<double>(count) &&
           dual.cwiseAbs().maxCoeff() <= 1e-6 * (1 + gradient_.cwiseAbs().maxCoeff())) {
-        break;
+        return x;
       }
       const Vector scale = s + slack_ * z;
       factor_.factorize_with(assemble(z.cwiseQuotient(scale)), iteration == 0);
@@ -75,7 +75,7 @@ public:
       s += length * step.s;
       z += length * step.z;
     }
-    return x;
+    return Vector::Zero(size_);
   }
 
 private:
@@ -111,17 +111,17 @@ private:
   // The blocks on and below the diagonal that are not zero, and where each goes.
   void lay_out() {
     std::vector<std::array<Index, 2>> all;
-    for (const BlockQuadratic::Term& t : quadratic_.terms) {
-      all.push_back({std::max(t.row, t.column), std::min(t.row, t.column)});
-    }
-    for (const BlockConstraint& c : constraints_) {
-      for_pairs(c, [&](int i, int j) { all.push_back({c.vertex[i], c.vertex[j]}); });
-    }
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+    // A row has few blocks: their numbers are found by going through them.
+    std::vector<std::vector<Index>> of_row(quadratic_.gradient.size());
     const auto at = [&](Index row, Index column) {
-      return static_cast<Index>(std::lower_bound(all.begin(), all.end(), std::array{row, column}) -
-                                all.begin());
+      for (const Index block : of_row[row]) {
+        if (all[block][1] == column) {
+          return block;
+        }
+      }
+      of_row[row].push_back(static_cast<Index>(all.size()));
+      all.push_back({row, column});
+      return of_row[row].back();
     };
     for (const BlockQuadratic::Term& t : quadratic_.terms) {
       term_block_.push_back(at(std::max(t.row, t.column), std::min(t.row, t.column)));

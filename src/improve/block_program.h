@@ -35,7 +35,8 @@ struct BlockQuadratic {
 /// The points that minimise the quadratic under the constraints, by a primal-dual interior point
 /// method (Mehrotra's predictor and corrector; Nocedal and Wright, "Numerical Optimization", 16.6).
 /// Each constraint may be missed by `slack` times its multiplier, so that there always is a
-/// solution. The start is x = 0.
+/// solution. The start is x = 0; that is also the answer if the method does not converge, which
+/// happens when the constraints contradict each other by far more than the slack.
 ///
 /// Cost: some 15 sparse factorisations of a 3N x 3N matrix.
 std::vector<Vec3> minimize(const BlockQuadratic& quadratic,

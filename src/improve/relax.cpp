@@ -44,13 +44,14 @@ public:
   }
 
   double run(const RelaxOptions& options, const Progress& progress) {
-    double reach = options.first_step * objective_.diagonal();
+    double& reach = cage_.reach;
+    reach = std::min(reach, options.first_step * objective_.diagonal());
     double value = total(at_);
     for (int step = 0; step < options.steps && !progress.cancelled(); ++step) {
       progress(static_cast<double>(step) / options.steps, "relax");
       const Positions goal = moved(at_, reach, true);
       // The constraints curve: what the step has overshot is taken back by a step of its own.
-      const Positions corrected = moved(goal, reach / 2, false);
+      const Positions corrected = moved(goal, reach / 4, false);
       const Positions next = valid_part(corrected);
       const double lower = total(next);
       if (lower < value) {
@@ -146,7 +147,8 @@ private:
         constraints.push_back({{v, v, v}, {1, 0, 0}, -Vec3::Unit(k), -reach / unit});
       }
     }
-    constexpr double slack = 1e-6;
+    // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
+    const double slack = towards_goal ? 1e-6 : 0.05 * guard_.clearance() / unit;
     const std::vector<Vec3> step = minimize(quadratic, constraints, slack);
     Positions result = at;
     for (Index v = 0; v < living_.size(); ++v) {
@@ -218,6 +220,7 @@ private:
 
   // Half spaces that keep the face clear of the model for small moves: one for the highest point
   // of the model below each small triangle of the face, one for the nearest to each of its corners.
+  // What is on an edge is looked at by one of its two faces, for both.
   void add_constraints(Index f, const Corners& t, double reach,
                        std::vector<BlockConstraint>& constraints) const {
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -226,39 +229,28 @@ private:
       return;
     }
     const Vec3 n = normal / length;
-    const HalfSpace plane{n, n.dot(t[0])};
     const double keep = margin * guard_.clearance();
-    const double deepest = -(keep + 2 * reach);
-    const Triangle vertices = numbered(cage_.mesh.face(f));
-    const auto point = [&](int i, int j) {
-      return Vec3(t[0] + (t[1] - t[0]) * i / cells + (t[2] - t[0]) * j / cells);
-    };
-    const auto add_highest = [&](const Corners& cell) {
-      std::array<HalfSpace, 3> sides;
-      for (int k = 0; k < 3; ++k) {
-        const Vec3 out = (cell[(k + 1) % 3] - cell[k]).cross(n).normalized();
-        sides[k] = {out, out.dot(cell[k])};
-      }
-      const auto top = objective_.model().tree.highest(plane, sides, deepest, reach);
-      if (top) {
-        const Vec3 foot = top->point - top->height * n;
-        constraints.push_back({vertices, barycentric(foot, t), n, top->height + keep});
-      }
-    };
-    for (int i = 0; i < cells; ++i) {
-      for (int j = 0; i + j < cells; ++j) {
-        add_highest({point(i, j), point(i + 1, j), point(i, j + 1)});
-        if (i + j + 1 < cells) {
-          add_highest({point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)});
-        }
-      }
+    const Triangle& face = cage_.mesh.face(f);
+    const Triangle vertices = numbered(face);
+    for (const SurfaceTree::Relief& r :
+         objective_.model().tree.relief(t, cells, -(keep + reach), reach)) {
+      constraints.push_back({vertices, {1 - r.at_b - r.at_c, r.at_b, r.at_c}, n, r.height + keep});
     }
-    for (int i = 0; i <= cells; ++i) {
-      for (int j = 0; i + j <= cells; ++j) {
-        const bool on_border = i == 0 || j == 0 || i + j == cells;
-        if (on_border) {
-          add_nearest(vertices, t, point(i, j), keep, reach, constraints);
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      const bool alone = cage_.mesh.face_left_of(face[next], face[k]) == no_index;
+      if (face[k] < face[next] || alone) {
+        for (int i = 1; i < cells; ++i) {
+          std::array<double, 3> share{};
+          share[next] = static_cast<double>(i) / cells;
+          share[k] = 1 - share[next];
+          add_nearest(vertices, share, t, keep, reach, constraints);
         }
+      }
+      if (cage_.mesh.around(face[k]).front() == f) {
+        std::array<double, 3> share{};
+        share[k] = 1;
+        add_nearest(vertices, share, t, keep, reach, constraints);
       }
     }
     if (const auto pair = objective_.model().tree.nearest_to(t, guard_.clearance())) {
@@ -268,12 +260,13 @@ private:
     }
   }
 
-  void add_nearest(const Triangle& vertices, const Corners& t, const Vec3& p, double keep,
-                   double reach, std::vector<BlockConstraint>& constraints) const {
-    const SurfaceTree::Nearest near = objective_.model().tree.nearest(p, keep + 2 * reach);
+  void add_nearest(const Triangle& vertices, const std::array<double, 3>& share, const Corners& t,
+                   double keep, double reach, std::vector<BlockConstraint>& constraints) const {
+    const Vec3 p = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
+    const SurfaceTree::Nearest near = objective_.model().tree.nearest(p, keep + reach);
     if (near.distance > 0.01 * keep && std::isfinite(near.distance)) {
       const Vec3 u = (p - near.point) / near.distance;
-      constraints.push_back({vertices, barycentric(p, t), u, keep - near.distance});
+      constraints.push_back({vertices, share, u, keep - near.distance});
     }
   }
 
@@ -294,8 +287,9 @@ private:
   [[nodiscard]] Positions valid_part(const Positions& goal) const {
     std::vector<double> share(at_.size(), 1);
     Positions next = goal;
+    std::vector<bool> changed(at_.size(), true);
     for (;;) {
-      const std::vector<Index> bad = faces_in_trouble(next);
+      const std::vector<Index> bad = faces_in_trouble(next, changed);
       if (bad.empty()) {
         return loses_a_part(next) ? at_ : next;
       }
@@ -306,15 +300,19 @@ private:
       }
       std::sort(vertices.begin(), vertices.end());
       vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      std::fill(changed.begin(), changed.end(), false);
       for (const Index v : vertices) {
         constexpr double least = 0.1;
+        changed[v] = true;
         share[v] = share[v] > least ? share[v] / 2 : 0;
         next[v] = share[v] > 0 ? Vec3(at_[v] + share[v] * (goal[v] - at_[v])) : at_[v];
       }
     }
   }
 
-  [[nodiscard]] std::vector<Index> faces_in_trouble(const Positions& next) const {
+  // Those among the faces with a changed vertex: what they do to others shows at them.
+  [[nodiscard]] std::vector<Index> faces_in_trouble(const Positions& next,
+                                                    const std::vector<bool>& changed) const {
     CageMesh moved = cage_.mesh;
     for (const Index v : living_) {
       moved.set_position(v, next[v]);
@@ -325,7 +323,7 @@ private:
       const Triangle& t = moved.face(faces_[i]);
       const bool still =
           next[t[0]] == at_[t[0]] && next[t[1]] == at_[t[1]] && next[t[2]] == at_[t[2]];
-      if (still) {
+      if (still || !(changed[t[0]] || changed[t[1]] || changed[t[2]])) {
         return; // as before the step, when all was well; others report what they do to it
       }
       Patch patch; // the face by itself, taken out and put back

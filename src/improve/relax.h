@@ -9,7 +9,8 @@ namespace cagewright {
 
 struct RelaxOptions {
   int steps = 8;
-  double first_step = 0.02;  ///< no vertex moves further in the first step, in diagonals
+  double first_step = 0.01;  ///< no vertex moves further in the first step, in diagonals; less if
+                             ///< the last step on this cage was much shorter
   double least_gain = 0.002; ///< stop when a step lowers the objective by less than this share
 };
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <queue>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,8 +19,10 @@ namespace {
 using Edge = std::array<Index, 2>;
 
 struct Candidate {
-  double cost = 0;
+  double cost = 0; // or a guess at it, if it is not evaluated
   Edge edge{};
+  std::uint32_t entry = 0; // the edge's latest is the one that counts
+  bool evaluated = false;
   std::array<std::uint32_t, 2> stamps{};
   Vec3 position = Vec3::Zero();
 
@@ -83,12 +87,36 @@ private:
     parallel_for(0, edges.size(), 1, [&](std::size_t i) { candidates[i] = evaluate(edges[i]); });
     for (std::size_t i = 0; i < edges.size(); ++i) {
       if (candidates[i]) {
-        queue_.push(*candidates[i]);
+        push(*candidates[i]);
       } else {
         failed_[edges[i][0]].push_back(edges[i]);
         failed_[edges[i][1]].push_back(edges[i]);
       }
     }
+  }
+
+  void push(Candidate candidate) {
+    Known& known = known_[key(candidate.edge)];
+    candidate.entry = ++known.entry;
+    if (candidate.evaluated) {
+      known.cost = candidate.cost;
+    }
+    queue_.push(candidate);
+  }
+
+  // Puts an edge in the queue that is to be evaluated only when it comes to the top.
+  void guess(const Edge& edge, double cost) { push({.cost = cost, .edge = edge}); }
+
+  static std::uint64_t key(const Edge& edge) { return std::uint64_t{edge[0]} << 32U | edge[1]; }
+
+  [[nodiscard]] double known_cost(Index a, Index b, double otherwise) const {
+    const auto it = known_.find(key({std::min(a, b), std::max(a, b)}));
+    return it != known_.end() && it->second.cost ? *it->second.cost : otherwise;
+  }
+
+  [[nodiscard]] bool is_edge(const Edge& edge) const {
+    return cage_.mesh.has_vertex(edge[0]) && cage_.mesh.has_vertex(edge[1]) &&
+           cage_.mesh.has_edge(edge[0], edge[1]);
   }
 
   [[nodiscard]] std::optional<Candidate> evaluate(const Edge& edge) const {
@@ -114,7 +142,11 @@ private:
     if (cage_.mesh.is_half() && cost > 0) { // for each vertex of the whole that it saves
       cost *= 2.0 / static_cast<double>(cage_.mesh.copies(patch->gone));
     }
-    return Candidate{cost, edge, {stamps_[edge[0]], stamps_[edge[1]]}, *position};
+    return Candidate{.cost = cost,
+                     .edge = edge,
+                     .evaluated = true,
+                     .stamps = {stamps_[edge[0]], stamps_[edge[1]]},
+                     .position = *position};
   }
 
   [[nodiscard]] bool fits_valence(const Patch& patch) const {
@@ -143,8 +175,12 @@ private:
     std::vector<Edge> stale;
     while (!queue_.empty() && stale.size() < batch) {
       const Candidate best = queue_.top();
+      if (best.entry != known_[key(best.edge)].entry || !is_edge(best.edge)) {
+        queue_.pop();
+        continue;
+      }
       const auto& [u, v] = best.edge;
-      const bool fresh = best.stamps == std::array{stamps_[u], stamps_[v]};
+      const bool fresh = best.evaluated && best.stamps == std::array{stamps_[u], stamps_[v]};
       if (fresh && stale.empty()) {
         queue_.pop();
         take(best);
@@ -154,9 +190,7 @@ private:
         break;
       }
       queue_.pop();
-      if (cage_.mesh.has_vertex(u) && cage_.mesh.has_vertex(v) && cage_.mesh.has_edge(u, v)) {
-        stale.push_back(best.edge);
-      }
+      stale.push_back(best.edge);
     }
     offer(stale);
   }
@@ -180,24 +214,21 @@ private:
       });
     }
     changed_ = true;
-    std::vector<Edge> again;
-    touch(kept, again);
+    touch(kept, candidate.cost);
     for (const Index w : cage_.mesh.neighbors(kept)) {
-      again.push_back({std::min(kept, w), std::max(kept, w)});
-      touch(w, again);
+      touch(w, candidate.cost);
+      // Costs rise as the cage gets coarser: what was known of the edge is a fair lower bound.
+      const double cost = known_cost(kept, w, candidate.cost);
+      guess({std::min(kept, w), std::max(kept, w)}, std::min(cost, known_cost(patch.gone, w, cost)));
     }
-    std::sort(again.begin(), again.end());
-    again.erase(std::unique(again.begin(), again.end()), again.end());
-    offer(again);
   }
 
-  // The faces at v have changed: its failed edges get another chance.
-  void touch(Index v, std::vector<Edge>& again) {
+  // The faces at v have changed: its failed edges get another chance, though not at once.
+  void touch(Index v, double cost) {
     ++stamps_[v];
     for (const Edge& edge : std::exchange(failed_[v], {})) {
-      if (cage_.mesh.has_vertex(edge[0]) && cage_.mesh.has_vertex(edge[1]) &&
-          cage_.mesh.has_edge(edge[0], edge[1])) {
-        again.push_back(edge);
+      if (is_edge(edge)) {
+        guess(edge, cost + std::abs(cost) / 2);
       }
     }
   }
@@ -222,6 +253,11 @@ private:
   std::vector<double> values_;        // of the faces, by number: their parts of the objective
   std::vector<std::uint32_t> stamps_; // of a vertex: how often the faces at it have changed
   std::vector<std::vector<Edge>> failed_;
+  struct Known {
+    std::optional<double> cost; // when it could last be collapsed
+    std::uint32_t entry = 0;    // in the queue; earlier ones are void
+  };
+  std::unordered_map<std::uint64_t, Known> known_; // looked up only, never gone through
   std::priority_queue<Candidate> queue_;
   bool changed_ = false; // since all edges were last offered
   int retries_ = 0;

@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "improve/objective.h"
 
+#include <limits>
 #include <vector>
 
 namespace cagewright {
@@ -38,6 +39,8 @@ struct WorkingCage {
 
   CageMesh mesh;
   FaceBoxes boxes;
+  /// How far relax() let a vertex move in its next step, when it stopped.
+  double reach = std::numeric_limits<double>::infinity();
 };
 
 /// Collapses edges, the one that costs the objective least first, until the number of vertices is

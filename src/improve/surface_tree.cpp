@@ -102,6 +102,13 @@ public:
   explicit Clipped(const Corners& t) : size_(3) { std::copy(t.begin(), t.end(), points_.begin()); }
 
   void cut(const HalfSpace& keep) {
+    bool whole = true;
+    for (int i = 0; i < size_; ++i) {
+      whole = whole && keep.above(points_[i]) <= 0;
+    }
+    if (whole) {
+      return;
+    }
     std::array<Vec3, 10> kept;
     int count = 0;
     for (int i = 0; i < size_; ++i) {
@@ -474,6 +481,163 @@ std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
     }
   }
   return best;
+}
+
+std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, int cells,
+                                                     double least, double most) const {
+  const Vec3 ab = triangle[1] - triangle[0];
+  const Vec3 ac = triangle[2] - triangle[0];
+  const Vec3 n = ab.cross(ac).normalized();
+  const Vec3 to_b = ac.cross(n) / ab.dot(ac.cross(n));
+  const Vec3 to_c = n.cross(ab) / ac.dot(n.cross(ab));
+  const auto flat = [&](const Vec3& p) { // its place in the triangle, in cells, and its height
+    const Vec3 d = p - triangle[0];
+    return Vec3(cells * to_b.dot(d), cells * to_c.dot(d), n.dot(d));
+  };
+  // Cells in a square grid, two to a square; those beyond the diagonal can hold nothing.
+  constexpr double never = std::numeric_limits<double>::infinity();
+  std::array<Relief, 2 * most_cells * most_cells> best;
+  std::array<double, 2 * most_cells * most_cells> heights;
+  const auto number = [&](int i, int j, int upper) { return 2 * (i * most_cells + j) + upper; };
+  heights.fill(never);
+  for (int i = 0; i < cells; ++i) {
+    for (int j = 0; i + j < cells; ++j) {
+      heights[number(i, j, 0)] = least;
+      heights[number(i, j, 1)] = i + j + 1 < cells ? least : never;
+    }
+  }
+  struct Range { // of squares
+    int low[2];
+    int high[2];
+  };
+  const auto to_range = [&](double low_b, double high_b, double low_c, double high_c) {
+    const double last = cells - 1;
+    return Range{{static_cast<int>(std::clamp(low_b, 0.0, last)),
+                  static_cast<int>(std::clamp(low_c, 0.0, last))},
+                 {static_cast<int>(std::clamp(high_b, 0.0, last)),
+                  static_cast<int>(std::clamp(high_c, 0.0, last))}};
+  };
+  // True if some cell of the range may still get something of this height.
+  const auto wanted = [&](const Range& r, double height) {
+    for (int i = r.low[0]; i <= r.high[0]; ++i) {
+      for (int j = r.low[1]; j <= r.high[1]; ++j) {
+        if (heights[number(i, j, 0)] < height || heights[number(i, j, 1)] < height) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  const auto offer = [&](int cell, const Vec3& p) {
+    if (p.z() > heights[cell] && p.z() <= most) {
+      heights[cell] = p.z();
+      best[cell] = {p.x() / cells, p.y() / cells, p.z()};
+    }
+  };
+  const auto add = [&](const Corners& t) {
+    const Corners at = {flat(t[0]), flat(t[1]), flat(t[2])};
+    const Vec3 low = at[0].cwiseMin(at[1]).cwiseMin(at[2]);
+    const Vec3 high = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
+    const bool beside =
+        high.x() < 0 || high.y() < 0 || low.x() + low.y() > cells ||
+        std::min({at[0].x() + at[0].y(), at[1].x() + at[1].y(), at[2].x() + at[2].y()}) > cells;
+    const Range r = to_range(low.x(), high.x(), low.y(), high.y());
+    if (beside || low.z() > most || !wanted(r, high.z())) {
+      return;
+    }
+    for (int i = r.low[0]; i <= r.high[0]; ++i) {
+      for (int j = r.low[1]; j <= r.high[1]; ++j) {
+        for (int upper = 0; upper < 2; ++upper) {
+          const int cell = number(i, j, upper);
+          if (heights[cell] >= high.z()) {
+            continue;
+          }
+          const double sign = upper == 0 ? 1 : -1;
+          Clipped polygon(at);
+          polygon.cut({Vec3(0, 0, 1), most});
+          polygon.cut({Vec3(-sign, 0, 0), upper == 0 ? -i : i + 1.0});
+          polygon.cut({Vec3(0, -sign, 0), upper == 0 ? -j : j + 1.0});
+          polygon.cut({Vec3(sign, sign, 0), sign * (i + j + 1)});
+          for (const Vec3& p : polygon.corners()) {
+            offer(cell, p);
+          }
+        }
+      }
+    }
+  };
+  // The three linear functions in the frame, in single precision.
+  struct Linear {
+    float slope[3];
+    float offset;
+    float slack; // of rounding
+  };
+  const auto to_float = [&](const Vec3& slope, double offset) {
+    Linear f{};
+    for (int k = 0; k < 3; ++k) {
+      f.slope[k] = static_cast<float>(slope[k] / scale_);
+      f.slack += rounding * std::abs(f.slope[k]);
+    }
+    f.offset = static_cast<float>(offset + slope.dot(origin_ - triangle[0]));
+    f.slack += rounding * std::abs(f.offset);
+    return f;
+  };
+  const std::array<Linear, 4> functions = {to_float(n, 0), to_float(cells * to_b, 0),
+                                           to_float(cells * to_c, 0),
+                                           to_float(-cells * (to_b + to_c), cells)};
+  const auto lowest = static_cast<float>(least);
+  const auto highest = static_cast<float>(most);
+  struct Entry {
+    float height;
+    float low_b, high_b, low_c, high_c;
+    Index child;
+  };
+  std::array<Entry, deepest> stack;
+  int top = 0;
+  if (!nodes_.empty()) {
+    stack[top++] = {1e30F, 0, 1e30F, 0, 1e30F, 0};
+  }
+  while (top > 0) {
+    const Entry entry = stack[--top];
+    if (!wanted(to_range(entry.low_b, entry.high_b, entry.low_c, entry.high_c), entry.height)) {
+      continue;
+    }
+    if ((entry.child & leaf_bit) != 0) {
+      add(triangles_[entry.child & ~leaf_bit]);
+      continue;
+    }
+    const Node& node = nodes_[entry.child];
+    std::array<Lanes, 4> low;
+    std::array<Lanes, 4> high;
+    for (int a = 0; a < 4; ++a) {
+      const Linear& f = functions[a];
+      const Lanes at = node.center[0] * f.slope[0] + node.center[1] * f.slope[1] +
+                       node.center[2] * f.slope[2] + f.offset;
+      const Lanes spread = node.half[0] * std::abs(f.slope[0]) +
+                           node.half[1] * std::abs(f.slope[1]) +
+                           node.half[2] * std::abs(f.slope[2]) + f.slack;
+      low[a] = at - spread;
+      high[a] = at + spread;
+    }
+    const int begin = top;
+    for (int i = 0; i < width; ++i) {
+      const bool meets = node.half[0][i] >= 0 && high[0][i] > lowest && low[0][i] < highest &&
+                         high[1][i] >= 0 && high[2][i] >= 0 && high[3][i] >= 0;
+      if (meets) { // the highest last on the stack: it is looked at next
+        int at = top++;
+        for (; at > begin && stack[at - 1].height > high[0][i]; --at) {
+          stack[at] = stack[at - 1];
+        }
+        stack[at] = {high[0][i], low[1][i], high[1][i], low[2][i], high[2][i], node.child[i]};
+      }
+    }
+  }
+  std::vector<Relief> result;
+  for (std::size_t cell = 0; cell < heights.size(); ++cell) {
+    if (heights[cell] > least && heights[cell] < never) {
+      result.push_back(best[cell]);
+    }
+  }
+  return result;
 }
 
 } // namespace cagewright

@@ -69,6 +69,22 @@ public:
                                                const std::array<HalfSpace, 3>& sides, double least,
                                                double most, double error = 0) const;
 
+  /// A point of the model above or below a triangle (a, b, c): its foot is
+  /// (1 - at_b - at_c) a + at_b b + at_c c.
+  struct Relief {
+    double at_b = 0;
+    double at_c = 0;
+    double height = 0;
+  };
+
+  static constexpr int most_cells = 4;
+
+  /// The model's relief over a triangle: of the cells^2 similar triangles that it is cut into, the
+  /// highest point of the model in the column of each, among heights between `least` and `most`.
+  /// Columns without one are left out. The triangle must have an area.
+  [[nodiscard]] std::vector<Relief> relief(const Corners& triangle, int cells, double least,
+                                           double most) const;
+
 private:
   static constexpr Index leaf_bit = Index{1} << 31U;
   static constexpr int width = 4;
