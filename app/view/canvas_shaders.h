@@ -30,8 +30,8 @@ uniform mat3 axes;
 vec3 lit(vec3 base, vec3 n) {
   float key = max(0.0, dot(n, normalize(vec3(-0.45, 0.65, 0.62))));
   float fill = max(0.0, dot(n, normalize(vec3(0.8, 0.05, 0.45))));
-  vec3 sky = mix(vec3(0.30, 0.28, 0.27), vec3(0.44, 0.46, 0.50), 0.5 + 0.5 * n.y);
-  vec3 light = sky + 0.62 * key * vec3(1.0, 0.98, 0.94) + 0.14 * fill * vec3(0.85, 0.9, 1.0);
+  vec3 sky = mix(vec3(0.38, 0.35, 0.33), vec3(0.52, 0.53, 0.55), 0.5 + 0.5 * n.y);
+  vec3 light = sky + 0.58 * key * vec3(1.0, 0.97, 0.92) + 0.14 * fill * vec3(0.85, 0.9, 1.0);
   float gloss = pow(max(0.0, dot(n, normalize(vec3(-0.25, 0.38, 0.9)))), 40.0);
   return base * light + 0.07 * gloss;
 }

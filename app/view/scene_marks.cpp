@@ -151,7 +151,7 @@ void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph
     const Color color = bad[f] != 0             ? color_of(colors.bad, 0.55)
                         : selected_face[f] != 0 ? color_of(colors.selected, is_hovered ? 0.6 : 0.45)
                         : is_hovered            ? color_of(colors.hovered, 0.3)
-                                                : color_of(colors.cage_face, 0.15);
+                                                : color_of(colors.cage_face, 0.11);
     FaceMark mark{{}, {color, color, color}};
     for (int k = 0; k < 3; ++k) {
       const Index v = cut.triangles[t][k];

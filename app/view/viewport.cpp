@@ -278,7 +278,9 @@ Marks Viewport::make_marks() {
   Marks marks;
   const Layers& layers = document_.layers();
   if (layers.grid) {
-    add_grid(scene_box(), camera_, colors_, marks);
+    // Not of what is being dragged: the ground stays where it is.
+    const Box3 box = document_.has_model() ? document_.model()->box : scene_box();
+    add_grid(box, camera_, colors_, marks);
   }
   if (document_.stages()) {
     marks.solids = voxels_;
