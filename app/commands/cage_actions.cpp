@@ -72,10 +72,6 @@ Selection selected_anew(CageAction action, const Document& document, const CageG
   }
 }
 
-Error wrong_selection(const char* what) {
-  return {ErrorCode::invalid_cage, what};
-}
-
 Result<EditedCage> edited(CageAction action, const PolygonMesh& cage, const Selection& selection,
                           const CageGraph& graph) {
   const Selection edges = converted(selection, SelectionMode::edge, graph);
@@ -85,17 +81,11 @@ Result<EditedCage> edited(CageAction action, const PolygonMesh& cage, const Sele
     return selection.mode == SelectionMode::face ? subdivide_faces(cage, faces.faces)
                                                  : split_edges(cage, edges.edges);
   case CageAction::split_ring:
-    if (edges.edges.size() != 1) {
-      return wrong_selection("select one edge to split its ring");
-    }
-    return split_ring(cage, edges.edges[0]);
+    return split_rings(cage, edges.edges);
   case CageAction::collapse:
     return collapse_edges(cage, edges.edges);
   case CageAction::flip:
-    if (edges.edges.size() != 1) {
-      return wrong_selection("select one edge to flip");
-    }
-    return flip_edge(cage, edges.edges[0]);
+    return flip_edges(cage, edges.edges);
   case CageAction::subdivide:
     return subdivide_faces(cage, faces.faces);
   case CageAction::remove:
@@ -103,7 +93,7 @@ Result<EditedCage> edited(CageAction action, const PolygonMesh& cage, const Sele
   case CageAction::extrude:
     return extrude_faces(cage, faces.faces, extrusion_offset(cage, faces.faces));
   default:
-    return wrong_selection("nothing to do");
+    return Error{ErrorCode::invalid_option, "nothing to do"};
   }
 }
 

@@ -515,49 +515,6 @@ Result<EditedCage> delete_edges(const PolygonMesh& cage, const CageGraph& graph,
   return draft.finish(SelectionMode::edge, {});
 }
 
-} // namespace
-
-Result<EditedCage> split_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges) {
-  const CageGraph graph(cage);
-  std::set<EdgeVertices> wanted;
-  for (const EdgeVertices& e : edges) {
-    if (!graph.find_edge(e[0], e[1])) {
-      return no_such("edge");
-    }
-    wanted.insert({std::min(e[0], e[1]), std::max(e[0], e[1])});
-  }
-  if (wanted.empty()) {
-    return refuse("no edge is selected");
-  }
-  return subdivide(cage, wanted, {}, SelectionMode::vertex);
-}
-
-Result<EditedCage> split_ring(const PolygonMesh& cage, const EdgeVertices& edge) {
-  const CageGraph graph(cage);
-  const std::optional<Index> number = graph.find_edge(edge[0], edge[1]);
-  if (!number) {
-    return no_such("edge");
-  }
-  std::set<EdgeVertices> wanted;
-  for (const Index e : edge_ring(*number, graph)) {
-    wanted.insert(graph.edge(e));
-  }
-  return subdivide(cage, wanted, {}, SelectionMode::edge);
-}
-
-Result<EditedCage> collapse_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges) {
-  const CageGraph graph(cage);
-  for (const EdgeVertices& e : edges) {
-    if (!graph.find_edge(e[0], e[1])) {
-      return no_such("edge");
-    }
-  }
-  if (edges.empty()) {
-    return refuse("no edge is selected");
-  }
-  return merge(cage, joined_vertices(edges), SelectionMode::vertex);
-}
-
 Result<EditedCage> flip_edge(const PolygonMesh& cage, const EdgeVertices& edge) {
   const CageGraph graph(cage);
   const std::optional<Index> number = graph.find_edge(edge[0], edge[1]);
@@ -600,6 +557,86 @@ Result<EditedCage> flip_edge(const PolygonMesh& cage, const EdgeVertices& edge) 
   draft.face(both[0]) = halves[0];
   draft.face(both[1]) = halves[1];
   return draft.finish(SelectionMode::edge, {(*ring)[from], (*ring)[to]});
+}
+
+} // namespace
+
+Result<EditedCage> split_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges) {
+  const CageGraph graph(cage);
+  std::set<EdgeVertices> wanted;
+  for (const EdgeVertices& e : edges) {
+    if (!graph.find_edge(e[0], e[1])) {
+      return no_such("edge");
+    }
+    wanted.insert({std::min(e[0], e[1]), std::max(e[0], e[1])});
+  }
+  if (wanted.empty()) {
+    return refuse("no edge is selected");
+  }
+  return subdivide(cage, wanted, {}, SelectionMode::vertex);
+}
+
+Result<EditedCage> split_rings(const PolygonMesh& cage, std::span<const EdgeVertices> edges) {
+  const CageGraph graph(cage);
+  std::set<EdgeVertices> wanted;
+  for (const EdgeVertices& edge : edges) {
+    const std::optional<Index> number = graph.find_edge(edge[0], edge[1]);
+    if (!number) {
+      return no_such("edge");
+    }
+    for (const Index e : edge_ring(*number, graph)) {
+      wanted.insert(graph.edge(e));
+    }
+  }
+  if (wanted.empty()) {
+    return refuse("no edge is selected");
+  }
+  return subdivide(cage, wanted, {}, SelectionMode::edge);
+}
+
+Result<EditedCage> collapse_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges) {
+  const CageGraph graph(cage);
+  for (const EdgeVertices& e : edges) {
+    if (!graph.find_edge(e[0], e[1])) {
+      return no_such("edge");
+    }
+  }
+  if (edges.empty()) {
+    return refuse("no edge is selected");
+  }
+  return merge(cage, joined_vertices(edges), SelectionMode::vertex);
+}
+
+Result<EditedCage> flip_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges) {
+  if (edges.empty()) {
+    return refuse("no edge is selected");
+  }
+  // Vertices keep their numbers unless there were some that no face uses.
+  std::optional<EditedCage> result;
+  std::vector<EdgeVertices> flipped;
+  for (const EdgeVertices& edge : edges) {
+    const auto now = [&](Index v) { return result ? result->new_of_old[v] : v; };
+    if (edge[0] >= cage.positions.size() || edge[1] >= cage.positions.size()) {
+      return no_such("edge");
+    }
+    Result<EditedCage> step =
+        flip_edge(result ? result->mesh : cage, EdgeVertices{now(edge[0]), now(edge[1])});
+    if (!step) {
+      return step.error();
+    }
+    flipped.insert(flipped.end(), step->selection.edges.begin(), step->selection.edges.end());
+    if (!result) {
+      result = std::move(*step);
+    } else {
+      result->mesh = std::move(step->mesh);
+    }
+  }
+  std::sort(flipped.begin(), flipped.end());
+  flipped.erase(std::unique(flipped.begin(), flipped.end()), flipped.end());
+  const CageGraph graph(result->mesh); // a later flip may have turned an earlier one's edge
+  std::erase_if(flipped, [&](const EdgeVertices& e) { return !graph.find_edge(e[0], e[1]); });
+  result->selection.edges = std::move(flipped);
+  return *std::move(result);
 }
 
 Result<EditedCage> subdivide_faces(const PolygonMesh& cage, std::span<const Index> faces) {

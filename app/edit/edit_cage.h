@@ -33,14 +33,15 @@ struct EditedCage {
 /// lie on a line: a triangle in two triangles, a quad with two opposite new vertices in two quads.
 Result<EditedCage> split_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges);
 
-/// Splits the edges of a whole ring: a loop of edges through the middle of a run of quads.
-Result<EditedCage> split_ring(const PolygonMesh& cage, const EdgeVertices& edge);
+/// Splits the edges of whole rings: loops of edges through the middle of runs of quads.
+Result<EditedCage> split_rings(const PolygonMesh& cage, std::span<const EdgeVertices> edges);
 
 /// Each edge drawn together to its middle. Edges that touch become one point.
 Result<EditedCage> collapse_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges);
 
-/// The edge between two faces turned to their next corners: the other diagonal of two triangles.
-Result<EditedCage> flip_edge(const PolygonMesh& cage, const EdgeVertices& edge);
+/// Each edge turned to the next corners of the two faces beside it: the other diagonal of two
+/// triangles. One after the other.
+Result<EditedCage> flip_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges);
 
 /// Each face in quads round its middle; triangles in four. Faces next to it are cut to fit.
 Result<EditedCage> subdivide_faces(const PolygonMesh& cage, std::span<const Index> faces);

@@ -90,6 +90,7 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
 
 Viewport::~Viewport() {
   if (canvas_) {
+    disconnect(context(), nullptr, this, nullptr); // its end comes after ours
     makeCurrent();
     canvas_.reset();
     doneCurrent();

@@ -83,12 +83,12 @@ TEST(EditCage, StaysClosedManifoldAndOrientedWhateverIsDone) {
         const std::vector<Index> faces = random_faces(mesh, random);
         Result<EditedCage> edited = kind == 0   ? split_edges(mesh, std::span(&edge, 1))
                                     : kind == 1 ? collapse_edges(mesh, std::span(&edge, 1))
-                                    : kind == 2 ? flip_edge(mesh, edge)
+                                    : kind == 2 ? flip_edges(mesh, std::span(&edge, 1))
                                     : kind == 3 ? subdivide_faces(mesh, faces)
                                     : kind == 4
                                         ? delete_elements(mesh, random_selection(mesh, random))
                                     : kind == 5 ? extrude_faces(mesh, faces, 0.1)
-                                                : split_ring(mesh, edge);
+                                                : split_rings(mesh, std::span(&edge, 1));
         if (!edited) {
           EXPECT_FALSE(edited.error().message.empty());
           continue;
@@ -115,7 +115,7 @@ TEST(EditCage, SplittingAndSubdividingLeaveTheShapeAsItIs) {
     for (int i = 0; i < 30; ++i) {
       const EdgeVertices edge = random_edge(mesh, random);
       for (const Result<EditedCage>& edited :
-           {split_edges(mesh, std::span(&edge, 1)), split_ring(mesh, edge),
+           {split_edges(mesh, std::span(&edge, 1)), split_rings(mesh, std::span(&edge, 1)),
             subdivide_faces(mesh, random_faces(mesh, random))}) {
         ASSERT_TRUE(edited);
         EXPECT_NEAR(volume(edited->mesh), volume(mesh), 1e-12);
@@ -129,7 +129,8 @@ TEST(EditCage, SplittingAndSubdividingLeaveTheShapeAsItIs) {
 
 TEST(EditCage, RingsOfQuadsStayQuads) {
   const PolygonMesh torus = quad_torus(8, 5);
-  const Result<EditedCage> edited = split_ring(torus, {0, 1});
+  const EdgeVertices across = {0, 1};
+  const Result<EditedCage> edited = split_rings(torus, std::span(&across, 1));
   ASSERT_TRUE(edited);
   EXPECT_EQ(edited->mesh.face_count(), torus.face_count() + 8);
   EXPECT_EQ(edited->mesh.positions.size(), torus.positions.size() + 8);
@@ -157,11 +158,11 @@ TEST(EditCage, SubdividedFacesStayWhatTheyAre) {
 TEST(EditCage, FlippingTrianglesTwiceIsTheSameEdgeAgain) {
   const PolygonMesh ball(make_icosphere(1));
   const EdgeVertices edge = CageGraph(ball).edge(10);
-  const Result<EditedCage> once = flip_edge(ball, edge);
+  const Result<EditedCage> once = flip_edges(ball, std::span(&edge, 1));
   ASSERT_TRUE(once);
   ASSERT_EQ(once->selection.edges.size(), 1U);
   EXPECT_FALSE(CageGraph(once->mesh).find_edge(edge[0], edge[1]));
-  const Result<EditedCage> twice = flip_edge(once->mesh, once->selection.edges[0]);
+  const Result<EditedCage> twice = flip_edges(once->mesh, once->selection.edges);
   ASSERT_TRUE(twice);
   EXPECT_EQ(twice->selection.edges[0], edge);
 }
@@ -172,7 +173,7 @@ TEST(EditCage, RefusesWhatWouldPinchAndSaysWhy) {
   const Result<EditedCage> collapsed = collapse_edges(tetrahedron, std::span(&edge, 1));
   ASSERT_FALSE(collapsed);
   EXPECT_EQ(collapsed.error().code, ErrorCode::invalid_cage);
-  EXPECT_FALSE(flip_edge(tetrahedron, edge)) << "the other diagonal exists";
+  EXPECT_FALSE(flip_edges(tetrahedron, std::span(&edge, 1))) << "the other diagonal exists";
   const std::vector<Index> all = {0, 1, 2, 3};
   EXPECT_FALSE(extrude_faces(tetrahedron, all, 0.1));
   EXPECT_FALSE(extrude_faces(tetrahedron, std::span(all).first(1), 0));
