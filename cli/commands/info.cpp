@@ -1,4 +1,5 @@
 #include "json.h"
+#include "plane_text.h"
 #include "session.h"
 
 #include "exact/predicates.h"
@@ -10,6 +11,7 @@
 #include "mesh/weld.h"
 #include "obb/minimum_box.h"
 #include "obb/principal_axes.h"
+#include "symmetry/mirror_plane.h"
 #include "validate/model_volume.h"
 #include "validate/self_crossings.h"
 #include "voxel/point_set.h"
@@ -54,6 +56,7 @@ struct Info {
   double area = 0;
   ModelVolume volume;
   std::vector<NamedBox> boxes;
+  std::optional<MirrorPlane> mirror;
 
   [[nodiscard]] std::size_t faces() const {
     std::size_t sum = 0;
@@ -107,7 +110,9 @@ Result<Info> describe(const PolygonMesh& model, const VoxelizeOptions& voxels,
   info.area = surface_area(triangles);
   info.volume = model_volume(triangles);
   progress(0.6, "boxes");
-  info.boxes = boxes_of(triangles, voxels, progress.part(0.6, 1));
+  info.boxes = boxes_of(triangles, voxels, progress.part(0.6, 0.9));
+  progress(0.9, "mirror plane");
+  info.mirror = detect_mirror_plane(triangles, {}, progress.part(0.9, 1));
   if (progress.cancelled()) {
     return Error::cancelled();
   }
@@ -189,6 +194,17 @@ std::string describe_sizes(const Info& info) {
   return text;
 }
 
+std::string describe_mirror(const Info& info) {
+  if (!info.mirror) {
+    return "No mirror plane\n";
+  }
+  constexpr double percent = 100;
+  return fmt::format("Mirror plane {}: off its mirror image by {:.2g} % of the diagonal in the "
+                     "mean, {:.2g} % at most but for a hundredth of the surface\n",
+                     text_of(*info.mirror), percent * info.mirror->mean_error,
+                     percent * info.mirror->high_error);
+}
+
 nlohmann::json to_json(const Info& info) {
   const TopologyReport& topology = info.topology;
   nlohmann::json json = {{"vertices", info.vertices},
@@ -214,6 +230,13 @@ nlohmann::json to_json(const Info& info) {
                          {"volume_method", name_of(info.volume.method)}};
   if (topology.genus) {
     json["genus"] = *topology.genus;
+  }
+  json["mirror_plane"] = nullptr;
+  if (info.mirror) {
+    json["mirror_plane"] = {{"normal", json_of(info.mirror->normal)},
+                            {"offset", info.mirror->offset},
+                            {"mean_error", info.mirror->mean_error},
+                            {"high_error", info.mirror->high_error}};
   }
   for (const auto& [sides, count] : info.faces_by_sides) {
     json["faces_by_sides"][std::to_string(sides)] = count;
@@ -241,7 +264,8 @@ int run(const Options& options, const Session& session) {
   }
   if (!session.quiet) {
     const std::string text = describe_faces(*info) + describe_topology(*info) +
-                             describe_defects(*info) + describe_sizes(*info);
+                             describe_defects(*info) + describe_sizes(*info) +
+                             describe_mirror(*info);
     std::fputs(text.c_str(), stdout);
   }
   return done;

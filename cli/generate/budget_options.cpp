@@ -50,6 +50,21 @@ void add_budget_options(CLI::App& command, GenerateArguments& arguments) {
                   "budget and the model")
       ->check(CLI::Range(0, 512))
       ->group(group);
+  command
+      .add_option(
+          "--symmetry", budget.symmetry,
+          "Make the cage its own mirror image, vertex by vertex: auto, if the model is, in "
+          "whatever plane; x, y or z, in the best plane across that axis, even if the model "
+          "is not; off")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, Symmetry>{{"auto", Symmetry::automatic},
+                                                                  {"x", Symmetry::x},
+                                                                  {"y", Symmetry::y},
+                                                                  {"z", Symmetry::z},
+                                                                  {"off", Symmetry::off}}))
+      ->default_str("off")
+      ->each(asked)
+      ->group(group);
 }
 
 } // namespace cagewright::cli

@@ -2,6 +2,7 @@
 
 #include "cage_figures.h"
 #include "json.h"
+#include "plane_text.h"
 
 #include <fmt/format.h>
 
@@ -124,6 +125,40 @@ nlohmann::json to_json(const GeneratedCage& made, const CageMetrics& metrics) {
   return j;
 }
 
+namespace {
+
+nlohmann::json symmetry_json(const BudgetCage& made) {
+  nlohmann::json j = {{"mirrored", made.mirror.has_value()}, {"why_not", made.why_not_mirrored}};
+  if (made.mirror) {
+    const MirrorPairing& mirror = *made.mirror;
+    j["plane"] = {{"normal", json_of(mirror.plane.normal)}, {"offset", mirror.plane.offset}};
+    j["model_mean_error"] = mirror.plane.mean_error;
+    j["model_high_error"] = mirror.plane.high_error;
+    j["pairing_error"] = mirror.error;
+    j["vertex_partners"] = mirror.vertex_partners;
+    j["face_partners"] = mirror.face_partners;
+  }
+  return j;
+}
+
+std::string symmetry_line(const BudgetCage& made) {
+  if (!made.mirror) {
+    return made.why_not_mirrored.empty() ? "" : "  not mirrored: " + made.why_not_mirrored + "\n";
+  }
+  const MirrorPairing& mirror = *made.mirror;
+  std::size_t on_plane = 0;
+  for (std::size_t v = 0; v < mirror.vertex_partners.size(); ++v) {
+    on_plane += mirror.vertex_partners[v] == v ? 1 : 0;
+  }
+  const std::size_t pairs = (mirror.vertex_partners.size() - on_plane) / 2;
+  return fmt::format(
+      "  mirrored in the plane {}: {} pairs of vertices, {} on it; {}\n", text_of(mirror.plane),
+      pairs, on_plane,
+      mirror.error == 0 ? "exact" : fmt::format("exact but for rounding, {:.2g}", mirror.error));
+}
+
+} // namespace
+
 nlohmann::json to_json(const BudgetCage& made, const CageMetrics& metrics) {
   nlohmann::json j;
   if (made.boxes) {
@@ -141,6 +176,7 @@ nlohmann::json to_json(const BudgetCage& made, const CageMetrics& metrics) {
                  {"objective", made.report.objective}};
   j["cage"] = figures_as_json(metrics);
   j["cage"]["valid"] = true; // make_budget_cage() returns no other
+  j["symmetry"] = symmetry_json(made);
   j["times"] = to_json(made.times);
   return j;
 }
@@ -173,7 +209,10 @@ std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
   const std::string verdict =
       made.report.reached ? std::string("a valid cage\n")
                           : "a valid cage, larger than asked for: " + made.report.why_not + "\n";
-  return verdict + start + figures_as_text(metrics) + times_line(made.times);
+  const std::string boxes =
+      made.why_not_boxes.empty() ? "" : "  not made from boxes: " + made.why_not_boxes + "\n";
+  return verdict + start + boxes + symmetry_line(made) + figures_as_text(metrics) +
+         times_line(made.times);
 }
 
 } // namespace cagewright::cli

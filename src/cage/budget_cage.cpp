@@ -1,5 +1,6 @@
 #include "cage/budget_cage.h"
 
+#include "cage/symmetric_cage.h"
 #include "cage/unit_frame.h"
 #include "envelope/envelope.h"
 #include "mesh/measures.h"
@@ -62,6 +63,25 @@ Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions&
   }
   BudgetCage made;
   Stopwatch watch(made.times);
+  if (options.symmetry != Symmetry::off) {
+    const ChosenPlane chosen =
+        choose_mirror_plane(model, options.symmetry, progress.part(0, started / 2));
+    watch.lap("symmetry");
+    made.why_not_mirrored = chosen.why_not;
+    if (chosen.plane) {
+      Result<BudgetCage> symmetric =
+          make_symmetric_cage(model, *chosen.plane, options, progress.part(started / 2, 1));
+      if (symmetric) {
+        symmetric->times.insert(symmetric->times.begin(), made.times.begin(), made.times.end());
+        return symmetric;
+      }
+      const bool insist = options.symmetry != Symmetry::automatic;
+      if (insist || symmetric.error().code == ErrorCode::cancelled) {
+        return symmetric.error();
+      }
+      made.why_not_mirrored = symmetric.error().message;
+    }
+  }
   const Progress part = progress.part(0, started);
   const Result<TriangleMesh> start = options.start == CageStart::envelope
                                          ? start_from_envelope(model, options, made, part)

@@ -4,8 +4,10 @@
 
 #include "cage/generate.h"
 #include "improve/improve.h"
+#include "symmetry/half.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace cagewright {
@@ -16,12 +18,22 @@ enum class CageStart {
   obb,      ///< the union of oriented boxes
 };
 
+/// Whether the cage is to be its own mirror image.
+enum class Symmetry {
+  off,
+  automatic, ///< if the model is, in any plane: see detect_mirror_plane()
+  x,         ///< in the best plane across this axis, even if the model is not
+  y,
+  z
+};
+
 struct BudgetCageOptions {
   CageStart start = CageStart::envelope;
   ImproveOptions improve = {}; ///< the budget and the clearance among them
   int resolution = 0;          ///< of the envelope: voxels along the model's diagonal; 0: chosen
   double closing = 0;          ///< of the envelope: gaps narrower than twice this are filled
   GenerateOptions boxes = {};  ///< of the boxes
+  Symmetry symmetry = Symmetry::off;
 };
 
 struct BudgetCage {
@@ -29,9 +41,12 @@ struct BudgetCage {
   ImproveReport report;
   double clearance = 0; ///< that the improvement kept: less than asked for if the boxes came nearer
   std::size_t start_vertices = 0;
-  int resolution = 0;                 ///< of the envelope
-  int bridges = 0;                    ///< of the envelope: rods that join pieces of the model
-  std::optional<GeneratedCage> boxes; ///< what the boxes gave, if they were the start
+  int resolution = 0;                  ///< of the envelope
+  int bridges = 0;                     ///< of the envelope: rods that join pieces of the model
+  std::optional<GeneratedCage> boxes;  ///< what the boxes gave, if they were the start
+  std::string why_not_boxes;           ///< if they were to be the start, and were not
+  std::optional<MirrorPairing> mirror; ///< of a cage that is its own mirror image
+  std::string why_not_mirrored;        ///< if it was to be, and is not
   std::vector<StageTime> times;
 };
 

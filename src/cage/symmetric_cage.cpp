@@ -1,0 +1,199 @@
+#include "cage/symmetric_cage.h"
+
+#include "envelope/envelope.h"
+#include "mesh/measures.h"
+#include "mesh/shapes.h"
+#include "spatial/bvh.h"
+#include "validate/validate_cage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace cagewright {
+namespace {
+
+// Shares of the whole time, for the progress bar.
+constexpr double started = 0.15;
+constexpr double improved = 0.95;
+
+/// Of the diagonal: a model this near to its mirror image is enclosed with it by any box.
+constexpr double same = 1e-6;
+
+/// What is known before the first vertex of the cage is.
+struct Task {
+  TriangleView model;
+  MirrorFrame frame;
+  HalfModel half;      ///< what half the cage must enclose
+  double diagonal = 0; ///< of the model: what all lengths are fractions of
+};
+
+Error not_valid(const ValidityReport& report) {
+  return {ErrorCode::no_valid_cage, "the symmetric cage that was made did not pass the check (" +
+                                        std::string(name_of(report.violations.front().kind)) +
+                                        "); try another resolution, or --symmetry off"};
+}
+
+Result<TriangleMesh> half_envelope(const Task& task, const BudgetCageOptions& options,
+                                   BudgetCage& made, const Progress& progress) {
+  const ImproveOptions& budget = options.improve;
+  EnvelopeOptions start;
+  start.resolution = options.resolution;
+  start.closing = options.closing;
+  start.clearance = budget.clearance;
+  start.vertices = budget.vertices > 0 ? budget.vertices
+                   : budget.faces > 0  ? budget.faces / 2 + 2
+                                       : start.vertices;
+  start.half = true;
+  start.diagonal = task.diagonal;
+  Result<Envelope> envelope_made = envelope(in_frame(task.model, task.frame), start, progress);
+  if (!envelope_made) {
+    return envelope_made.error();
+  }
+  made.resolution = envelope_made->resolution;
+  made.bridges = envelope_made->bridges;
+  made.clearance = budget.clearance;
+  return std::move(envelope_made->mesh);
+}
+
+/// The model and its mirror image as one, unless they are the same.
+TriangleMesh with_image(const Task& task) {
+  TriangleMesh model{{task.model.positions.begin(), task.model.positions.end()},
+                     {task.model.triangles.begin(), task.model.triangles.end()}};
+  if (task.frame.plane().high_error < same) {
+    return model;
+  }
+  TriangleMesh image = model;
+  for (Vec3& p : image.positions) {
+    p = task.frame.plane().mirrored(p);
+  }
+  for (Triangle& t : image.triangles) {
+    std::swap(t[1], t[2]);
+  }
+  return joined(model, image);
+}
+
+Result<TriangleMesh> half_of_boxes(const Task& task, const BudgetCageOptions& options,
+                                   BudgetCage& made, const Progress& progress) {
+  Result<GeneratedCage> boxes = generate_cage(with_image(task), options.boxes, progress);
+  if (!boxes) {
+    return boxes.error();
+  }
+  std::optional<TriangleMesh> half = cut_half(in_frame(boxes->cage, task.frame));
+  const Error no_start{ErrorCode::no_valid_cage,
+                       "the union of the boxes cut by the mirror plane is no valid cage"};
+  if (!half) {
+    return no_start;
+  }
+  const Result<ValidityReport> validity = validate_cage(join_halves(*half, task.frame).mesh,
+                                                        task.model, {.first_only = true}, progress);
+  if (!validity) {
+    return validity.error();
+  }
+  const double least = mesh_distance(TriangleBvh(*half), TriangleBvh(task.half.mesh)).distance;
+  if (!validity->valid() || !(least > 0)) {
+    return no_start;
+  }
+  made.boxes = std::move(*boxes);
+  // Boxes may come nearer than the clearance. No step of the improvement comes nearer still.
+  constexpr double below = 0.99;
+  made.clearance = std::min(options.improve.clearance, below * least / task.diagonal);
+  return std::move(*half);
+}
+
+Result<TriangleMesh> half_start(const Task& task, const BudgetCageOptions& options,
+                                BudgetCage& made, const Progress& progress) {
+  if (options.start == CageStart::envelope) {
+    return half_envelope(task, options, made, progress);
+  }
+  Result<TriangleMesh> half = half_of_boxes(task, options, made, progress.part(0, 0.7));
+  if (half || half.error().code == ErrorCode::cancelled) {
+    return half;
+  }
+  made.why_not_boxes = half.error().message;
+  return half_envelope(task, options, made, progress.part(0.7, 1));
+}
+
+std::size_t whole_vertices(const TriangleMesh& half) {
+  const auto on_plane = std::count_if(half.positions.begin(), half.positions.end(),
+                                      [](const Vec3& p) { return p.x() == 0; });
+  return 2 * half.positions.size() - static_cast<std::size_t>(on_plane);
+}
+
+} // namespace
+
+ChosenPlane choose_mirror_plane(TriangleView model, Symmetry symmetry, const Progress& progress) {
+  switch (symmetry) {
+  case Symmetry::off:
+    return {};
+  case Symmetry::automatic:
+    if (const auto plane = detect_mirror_plane(model, {}, progress)) {
+      return {plane, ""};
+    }
+    return {std::nullopt, "the model is not nearly enough its own mirror image in any plane"};
+  case Symmetry::x:
+  case Symmetry::y:
+  case Symmetry::z:
+    break;
+  }
+  const int axis = symmetry == Symmetry::x ? 0 : symmetry == Symmetry::y ? 1 : 2;
+  if (const auto plane = best_mirror_plane(model, axis)) {
+    return {plane, ""};
+  }
+  return {std::nullopt, "the model has no surface to mirror"};
+}
+
+Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& plane,
+                                       const BudgetCageOptions& options, const Progress& progress) {
+  BudgetCage made;
+  Stopwatch watch(made.times);
+  Task task;
+  task.model = model;
+  task.frame = MirrorFrame(plane, bounding_box(model.positions));
+  task.half = half_model(model, task.frame);
+  task.diagonal = diagonal(model.positions);
+  const Result<TriangleMesh> start = half_start(task, options, made, progress.part(0, started));
+  if (!start) {
+    return start.error();
+  }
+  made.start_vertices = whole_vertices(*start);
+  watch.lap(made.boxes ? "boxes" : "envelope");
+
+  ImproveOptions improvement = options.improve;
+  improvement.clearance = made.clearance;
+  improvement.extent = CageExtent::half;
+  improvement.diagonal = task.diagonal;
+  std::vector<double> density;
+  if (improvement.density.size() == model.positions.size()) {
+    for (const Index v : task.half.vertices) {
+      density.push_back(improvement.density[v]);
+    }
+    improvement.density = density;
+  }
+  Result<Improved> result =
+      improve(*start, task.half.mesh, improvement, progress.part(started, improved));
+  if (!result) {
+    return result.error();
+  }
+  const HalfCage half{std::move(result->cage), task.frame};
+  made.report = std::move(result->report);
+  watch.lap("improve");
+
+  // What is done to the faces of the half from here on is done to both.
+  Whole<TriangleMesh> whole = join_halves(half.mesh, half.frame);
+  const Result<ValidityReport> validity =
+      validate_cage(whole.mesh, model, {.first_only = true}, progress.part(improved, 1));
+  if (!validity) {
+    return validity.error();
+  }
+  if (!validity->valid()) {
+    return not_valid(*validity);
+  }
+  made.cage = std::move(whole.mesh);
+  made.mirror = std::move(whole.pairing);
+  watch.lap("check");
+  return made;
+}
+
+} // namespace cagewright
