@@ -1,0 +1,147 @@
+#include "cage/budget_cage.h"
+
+#include "mesh/measures.h"
+#include "mesh/shapes.h"
+#include "spatial/bvh.h"
+#include "validate/validate_cage.h"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <set>
+
+namespace cagewright {
+namespace {
+
+TriangleMesh ellipsoid(const Vec3& center, const Vec3& half) {
+  TriangleMesh mesh = make_icosphere(2);
+  for (Vec3& p : mesh.positions) {
+    p = center + p.cwiseProduct(half);
+  }
+  return mesh;
+}
+
+// A body with a head and two arms, one of which may hang lower; and two crumbs beside it.
+TriangleMesh figure(double lower = 0) {
+  TriangleMesh mesh = ellipsoid({0, 0, 0}, {1, 1.6, 0.7});
+  mesh = joined(mesh, ellipsoid({0, 2, 0.2}, {0.6, 0.6, 0.6}));
+  mesh = joined(mesh, ellipsoid({1.4, 0.6, 0.2}, {0.9, 0.25, 0.25}));
+  mesh = joined(mesh, ellipsoid({-1.4, 0.6 - lower, 0.2}, {0.9, 0.25, 0.25}));
+  mesh = joined(mesh, ellipsoid({1.4, 2, 0.2}, {0.05, 0.05, 0.05}));
+  return joined(mesh, ellipsoid({-1.4, 2, 0.2}, {0.05, 0.05, 0.05}));
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Mat3& turn, const Vec3& offset) {
+  for (Vec3& p : mesh.positions) {
+    p = turn * p + offset;
+  }
+  return mesh;
+}
+
+BudgetCageOptions options(int vertices, Symmetry symmetry) {
+  BudgetCageOptions result;
+  result.improve.vertices = vertices;
+  result.improve.rounds = 1;
+  result.symmetry = symmetry;
+  return result;
+}
+
+void expect_paired_exactly(const BudgetCage& made) {
+  ASSERT_TRUE(made.mirror) << made.why_not_mirrored;
+  const MirrorPairing& mirror = *made.mirror;
+  const int axis = mirror.plane.axis();
+  ASSERT_GE(axis, 0);
+  EXPECT_EQ(mirror.error, 0);
+  std::set<std::array<Index, 3>> faces;
+  const auto key = [](Triangle t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+  };
+  for (const Triangle& t : made.cage.triangles) {
+    faces.insert(key(t));
+  }
+  for (Index v = 0; v < made.cage.positions.size(); ++v) {
+    Vec3 sum = made.cage.positions[v] + made.cage.positions[mirror.vertex_partners[v]];
+    EXPECT_EQ(sum[axis], 2 * mirror.plane.offset);
+    sum -= 2 * made.cage.positions[v];
+    sum[axis] = 0;
+    EXPECT_EQ(sum, Vec3(Vec3::Zero()));
+    EXPECT_EQ(mirror.vertex_partners[v] == v, made.cage.positions[v][axis] == mirror.plane.offset);
+  }
+  for (Index f = 0; f < made.cage.triangles.size(); ++f) {
+    const auto [a, b, c] = made.cage.triangles[f];
+    const std::vector<Index>& partner = mirror.vertex_partners;
+    EXPECT_TRUE(faces.contains(key({partner[a], partner[c], partner[b]})));
+    EXPECT_EQ(key(made.cage.triangles[mirror.face_partners[f]]),
+              key({partner[a], partner[c], partner[b]}));
+  }
+}
+
+TEST(SymmetricCage, IsValidWithinTheBudgetClearAndPairedExactly) {
+  const TriangleMesh model = moved(figure(), Mat3(Mat3::Identity()), {0.3, 0, 0});
+  for (const CageStart start : {CageStart::envelope, CageStart::obb}) {
+    for (const int vertices : {40, 61}) {
+      BudgetCageOptions wanted = options(vertices, Symmetry::automatic);
+      wanted.start = start;
+      const Result<BudgetCage> made = make_budget_cage(model, wanted);
+      ASSERT_TRUE(made) << made.error().message;
+      EXPECT_TRUE(made->report.reached);
+      EXPECT_EQ(made->why_not_boxes, "");
+      EXPECT_LE(made->cage.positions.size(), static_cast<std::size_t>(vertices));
+      EXPECT_TRUE(validate_cage(made->cage, model)->valid());
+      EXPECT_GE(mesh_distance(TriangleBvh(made->cage), TriangleBvh(model)).distance,
+                (1 - 1e-9) * made->clearance * diagonal(model.positions));
+      expect_paired_exactly(*made);
+      EXPECT_NEAR(made->mirror->plane.offset, 0.3, 1e-9);
+    }
+  }
+}
+
+TEST(SymmetricCage, OfAModelThatIsNotSymmetricEnclosesItAllTheSame) {
+  const TriangleMesh model = figure(1);
+  for (const Symmetry symmetry : {Symmetry::x, Symmetry::y, Symmetry::z}) {
+    const Result<BudgetCage> made = make_budget_cage(model, options(60, symmetry));
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_TRUE(validate_cage(made->cage, model)->valid());
+    expect_paired_exactly(*made);
+  }
+}
+
+TEST(SymmetricCage, IsNotMadeOfAModelThatIsNot) {
+  const Result<BudgetCage> made = make_budget_cage(figure(1), options(40, Symmetry::automatic));
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_FALSE(made->mirror);
+  EXPECT_NE(made->why_not_mirrored, "");
+  const Result<BudgetCage> off = make_budget_cage(figure(), options(40, Symmetry::off));
+  EXPECT_FALSE(off->mirror);
+  EXPECT_EQ(off->why_not_mirrored, "");
+}
+
+TEST(SymmetricCage, InAnyPlaneIsPairedToRounding) {
+  const TriangleMesh model =
+      moved(figure(), Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix(),
+            {10, 20, 30});
+  const Result<BudgetCage> made = make_budget_cage(model, options(50, Symmetry::automatic));
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(validate_cage(made->cage, model)->valid());
+  ASSERT_TRUE(made->mirror);
+  EXPECT_LT(made->mirror->error, 1e-13);
+  for (Index v = 0; v < made->cage.positions.size(); ++v) {
+    const Vec3& image = made->cage.positions[made->mirror->vertex_partners[v]];
+    EXPECT_LT((made->mirror->plane.mirrored(made->cage.positions[v]) - image).norm(), 1e-13);
+  }
+}
+
+TEST(SymmetricCage, IsTheSameOnOneThreadAsOnMany) {
+  const TriangleMesh model = figure();
+  const Result<BudgetCage> many = make_budget_cage(model, options(30, Symmetry::automatic));
+  tbb::task_arena(1).execute([&] {
+    const Result<BudgetCage> one = make_budget_cage(model, options(30, Symmetry::automatic));
+    EXPECT_EQ(one->cage.positions, many->cage.positions);
+    EXPECT_EQ(one->cage.triangles, many->cage.triangles);
+  });
+}
+
+} // namespace
+} // namespace cagewright
