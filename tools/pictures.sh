@@ -42,3 +42,10 @@ for vertices in 50 100 200 400; do
   mv "$work/next.png" "$work/budget.png"
 done
 mv "$work/budget.png" "$images/budget.png"
+
+# Symmetry: the same budget without and with it, from the front, and from the side.
+generate --vertices 100 --symmetry off -o "$work/off.obj"
+generate --vertices 100 --symmetry auto -o "$work/cage.obj"
+draw_edited "$model" "$work/off.obj" --view 0:8 -o "$work/1.png"
+draw_edited "$model" "$work/cage.obj" --view 0:8 --beside "$work/1.png" -o "$work/2.png"
+draw_edited "$model" "$work/cage.obj" --view -35:12 --beside "$work/2.png" -o "$images/symmetry.png"

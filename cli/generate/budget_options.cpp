@@ -8,6 +8,7 @@ namespace cagewright::cli {
 void add_budget_options(CLI::App& command, GenerateArguments& arguments) {
   const char* group = "Budget";
   BudgetCageOptions& budget = arguments.budget;
+  budget.symmetry = Symmetry::automatic;
   const auto asked = [&arguments](const auto&) { arguments.has_budget = true; };
   command
       .add_option("--vertices", arguments.vertices,
@@ -62,7 +63,7 @@ void add_budget_options(CLI::App& command, GenerateArguments& arguments) {
                                                                   {"y", Symmetry::y},
                                                                   {"z", Symmetry::z},
                                                                   {"off", Symmetry::off}}))
-      ->default_str("off")
+      ->default_str("auto")
       ->each(asked)
       ->group(group);
 }
