@@ -35,13 +35,14 @@ std::size_t vertex_budget(const CageMesh& start, const ImproveOptions& options) 
   return std::max(budget, tetrahedron);
 }
 
-ObjectiveWeights weights_for(TriangleView start, const ImproveOptions& options,
+ObjectiveWeights weights_for(TriangleView start, TriangleView model, const ImproveOptions& options,
                              std::size_t budget) {
   ObjectiveWeights weights;
   weights.square = options.square;
   weights.shape = options.shape;
   weights.typical_area = surface_area(start) / (2.0 * static_cast<double>(budget));
   weights.typical_area *= options.extent == CageExtent::half ? 2 : 1;
+  set_emphasis(weights, model, options.density);
   return weights;
 }
 
@@ -68,7 +69,7 @@ public:
       : options_(options), surface_(model, options.diagonal),
         guard_(surface_, options.clearance * surface_.diagonal), cage_(start, options.extent),
         budget_(vertex_budget(cage_.mesh, options)),
-        objective_(surface_, weights_for(start, options, budget_)),
+        objective_(surface_, weights_for(start, model, options, budget_)),
         most_valence_(static_cast<std::size_t>(options.most_valence)) {}
 
   Result<Improved> run(const Progress& progress) {
@@ -111,6 +112,7 @@ private:
       relax_steps(4, Progress());
       most_valence_ += 2;
       limits_.worst_defect *= 2;
+      limits_.least_quality = 0.035;
       limits_.sharpest_bend = (limits_.sharpest_bend - 1) / 2;
       reduce(Placement::clear_of_model, budget_, Progress());
       if (cage_.mesh.vertex_count() == before) {

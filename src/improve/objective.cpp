@@ -27,6 +27,30 @@ double six_volumes(const Corners& t, const Vec3& origin) {
 
 } // namespace
 
+void set_emphasis(ObjectiveWeights& weights, TriangleView model, std::span<const double> density) {
+  weights.emphasis.clear();
+  weights.typical_emphasis = 1;
+  if (density.empty()) {
+    return;
+  }
+  constexpr double greatest_ratio = 100;
+  const double least = *std::min_element(density.begin(), density.end());
+  double area = 0;
+  double sum = 0;
+  for (const Triangle& t : model.triangles) {
+    const double mean = (density[t[0]] + density[t[1]] + density[t[2]]) / 3;
+    const double ratio = std::min(mean / least, greatest_ratio);
+    weights.emphasis.push_back(ratio * ratio);
+    const double a =
+        triangle_area({model.positions[t[0]], model.positions[t[1]], model.positions[t[2]]});
+    area += a;
+    sum += a * ratio * ratio;
+  }
+  if (area > 0) {
+    weights.typical_emphasis = sum / area;
+  }
+}
+
 double triangle_area(const Corners& t) {
   return (t[1] - t[0]).cross(t[2] - t[0]).norm() / 2;
 }
@@ -40,6 +64,15 @@ double shape_defect(const Corners& t) {
   return scaled * (most + good_shape) > sides ? std::max(0.0, sides / scaled - good_shape) : most;
 }
 
+double shape_quality(const Corners& t) {
+  const double a = (t[1] - t[0]).norm();
+  const double b = (t[2] - t[1]).norm();
+  const double c = (t[0] - t[2]).norm();
+  const double area = triangle_area(t);
+  const double scale = (a + b + c) * a * b * c;
+  return scale > 0 ? 16 * area * area / scale : 0;
+}
+
 double bend(const Corners& s, const Corners& t) {
   const Vec3 m = (s[1] - s[0]).cross(s[2] - s[0]);
   const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -51,7 +84,7 @@ double Objective::face(const Corners& t) const {
   double sum = 0;
   for (const Node& node : rule) {
     const Vec3 p = node.at[0] * t[0] + node.at[1] * t[1] + node.at[2] * t[2];
-    sum += node.weight * gap(nearest(p).distance);
+    sum += node.weight * gap(nearest(p));
   }
   const double x = shape_defect(t);
   return triangle_area(t) * sum + shape_weight() * x * x;

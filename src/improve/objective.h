@@ -15,25 +15,50 @@ namespace cagewright {
 /// diagonal), plus shape * D * area * x^2 for each face, x = (a^2 + b^2 + c^2) / (4 sqrt(3) A) - 1
 /// for a face of sides a, b, c and area A: zero when equilateral, about 6 when 2 r / R = 0.15,
 /// large for needles.
+///
+/// Where the model has an emphasis w, at the nearest of its triangles, a gap counts w times: the
+/// integrand there is (2 w - 1) d + w square d^2 / D, the volume having been counted once.
 struct ObjectiveWeights {
-  double square = 40;      ///< large gaps count more than small ones: no spikes
-  double shape = 7e-4;     ///< a distance in diagonals that a better shape is worth
-  double typical_area = 0; ///< `area` above, in the model's units: that of a typical face
+  double square = 40;                ///< large gaps count more than small ones: no spikes
+  double shape = 7e-4;               ///< a distance in diagonals that a better shape is worth
+  double typical_area = 0;           ///< `area` above, in the model's units: that of a typical face
+  std::vector<double> emphasis = {}; ///< of each triangle of the model, >= 1; none: 1 everywhere
+  double typical_emphasis = 1;       ///< that of a typical place
 };
+
+/// The emphasis that makes the cage finer where the density is greater: (density / least)^2. For
+/// small faces of side e the gap is about e^2 times the curvature, so that the least of
+/// integral(w gap) at a given number of faces has e ~ w^(-1/4) = density^(-1/2).
+///
+/// \param density  for each vertex of the model, > 0; none: no emphasis
+void set_emphasis(ObjectiveWeights& weights, TriangleView model, std::span<const double> density);
 
 class Objective {
 public:
   Objective(const ModelSurface& model, const ObjectiveWeights& weights)
       : model_(&model), weights_(weights) {}
 
+  [[nodiscard]] const ObjectiveWeights& weights() const { return weights_; }
   [[nodiscard]] const ModelSurface& model() const { return *model_; }
   [[nodiscard]] double diagonal() const { return model_->diagonal; }
 
-  /// d + square d^2 / D
-  [[nodiscard]] double gap(double d) const { return d + weights_.square * d * d / diagonal(); }
+  /// What a place of the cage is taken times, by the place of the model that is nearest.
+  [[nodiscard]] double emphasis(const SurfaceTree::Nearest& near) const {
+    return weights_.emphasis.empty() ? 1 : weights_.emphasis[near.triangle];
+  }
+
+  /// With an emphasis of one d + square d^2 / D.
+  [[nodiscard]] double gap(const SurfaceTree::Nearest& near) const {
+    const double d = near.distance;
+    return (2 * emphasis(near) - 1) * d + gap_curvature(near) / 2 * d * d;
+  }
   /// Its derivative, and its second.
-  [[nodiscard]] double gap_slope(double d) const { return 1 + gap_curvature() * d; }
-  [[nodiscard]] double gap_curvature() const { return 2 * weights_.square / diagonal(); }
+  [[nodiscard]] double gap_slope(const SurfaceTree::Nearest& near) const {
+    return 2 * emphasis(near) - 1 + gap_curvature(near) * near.distance;
+  }
+  [[nodiscard]] double gap_curvature(const SurfaceTree::Nearest& near) const {
+    return 2 * emphasis(near) * weights_.square / diagonal();
+  }
 
   /// What multiplies x^2.
   [[nodiscard]] double shape_weight() const {
@@ -74,6 +99,9 @@ inline constexpr double good_shape = 1;
 double shape_defect(const Corners& t);
 
 double triangle_area(const Corners& t);
+
+/// 2 r / R: 1 for an equilateral triangle, 0 for one without area.
+double shape_quality(const Corners& t);
 
 /// The cosine of the angle between the normals of two faces: -1 when one is folded onto the other.
 double bend(const Corners& s, const Corners& t);

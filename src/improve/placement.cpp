@@ -136,11 +136,11 @@ private:
       const Vec3 p = (t[0] + t[1] + t[2]) / 6 + t[k] / 2;
       const SurfaceTree::Nearest near = objective_.nearest(p);
       const double d = near.distance;
-      mean += objective_.gap(d) / 3;
+      mean += objective_.gap(near) / 3;
       if (d > 0) {
         const Vec3 u = (p - near.point) / d;
-        q.gradient += area / 3 * share * objective_.gap_slope(d) * u;
-        q.hessian += area / 3 * share * share * objective_.gap_curvature() * u * u.transpose();
+        q.gradient += area / 3 * share * objective_.gap_slope(near) * u;
+        q.hessian += area / 3 * share * share * objective_.gap_curvature(near) * u * u.transpose();
       }
     }
     q.gradient += mean / 2 * (n / (2 * area)).cross(t[2] - t[1]); // the area changes too

@@ -114,7 +114,8 @@ private:
     std::vector<BlockConstraint> constraints;
     // The program is scaled to lengths of the diagonal and to gradients near one.
     const double unit = objective_.diagonal();
-    const double scale = static_cast<double>(faces_.size()) / (unit * unit * unit);
+    const double scale = static_cast<double>(faces_.size()) /
+                         (objective_.weights().typical_emphasis * unit * unit * unit);
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const Triangle& t = cage_.mesh.face(faces_[i]);
       for (BlockConstraint c : pieces[i].constraints) {
@@ -183,14 +184,14 @@ private:
       const Vec3 p = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
       const SurfaceTree::Nearest near = objective_.nearest(p);
       const double d = near.distance;
-      mean += objective_.gap(d) / 6;
+      mean += objective_.gap(near) / 6;
       if (!(d > 0)) {
         continue;
       }
       const Vec3 u = (p - near.point) / d;
-      const Mat3 outer = area / 6 * objective_.gap_curvature() * u * u.transpose();
+      const Mat3 outer = area / 6 * objective_.gap_curvature(near) * u * u.transpose();
       for (int k = 0; k < 3; ++k) {
-        gradient[k] += area / 6 * share[k] * objective_.gap_slope(d) * u;
+        gradient[k] += area / 6 * share[k] * objective_.gap_slope(near) * u;
         for (int m = 0; m < 3; ++m) {
           hessian[k][m] += share[k] * share[m] * outer;
         }
@@ -344,18 +345,19 @@ private:
 
   // Needles and folds are no better than crossings, unless they were there before.
   [[nodiscard]] bool misshapen(const CageMesh& moved, Index f) const {
-    constexpr double worst_defect = 8;
-    constexpr double sharpest = -0.9;
+    const ShapeLimits limits;
     const Corners now = corners_of(moved, f);
     const Corners before = corners_of(cage_.mesh, f);
-    if (shape_defect(now) > std::max(worst_defect, shape_defect(before))) {
+    if (shape_defect(now) > std::max(limits.worst_defect, shape_defect(before)) ||
+        shape_quality(now) < std::min(limits.least_quality, shape_quality(before))) {
       return true;
     }
     const Triangle& t = moved.face(f);
     for (int k = 0; k < 3; ++k) {
       const Index p = t[(k + 1) % 3];
       const double b = bend(now, corners_across(moved, now, p, t[k]));
-      if (b < sharpest && b < bend(before, corners_across(cage_.mesh, before, p, t[k]))) {
+      if (b < limits.sharpest_bend &&
+          b < bend(before, corners_across(cage_.mesh, before, p, t[k]))) {
         return true;
       }
     }

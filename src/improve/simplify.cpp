@@ -153,7 +153,7 @@ private:
     return cage_.mesh.sides(patch.vertex) * patch.added.size() <= options_.most_valence;
   }
 
-  // Volume and shape only.
+  // Volume and shape only, with the emphasis at the new vertex.
   [[nodiscard]] double quick_cost(const Patch& patch) const {
     double cost = Objective::volume_change(cage_.mesh, patch);
     const double weight = objective_.shape_weight();
@@ -164,6 +164,9 @@ private:
     for (const Triangle& t : patch.added) {
       const double x = shape_defect(corners_after(cage_.mesh, patch, t));
       cost += weight * x * x;
+    }
+    if (!objective_.weights().emphasis.empty()) {
+      cost *= objective_.emphasis(objective_.nearest(patch.position));
     }
     return cost;
   }
@@ -219,7 +222,8 @@ private:
       touch(w, candidate.cost);
       // Costs rise as the cage gets coarser: what was known of the edge is a fair lower bound.
       const double cost = known_cost(kept, w, candidate.cost);
-      guess({std::min(kept, w), std::max(kept, w)}, std::min(cost, known_cost(patch.gone, w, cost)));
+      guess({std::min(kept, w), std::max(kept, w)},
+            std::min(cost, known_cost(patch.gone, w, cost)));
     }
   }
 
@@ -284,20 +288,23 @@ bool simplify(WorkingCage& cage, const Guard& guard, const Objective& objective,
 bool keeps_shape(const CageMesh& cage, const Patch& patch, const ShapeLimits& limits) {
   double old_bend = 1;
   double old_defect = 0;
+  double old_quality = 1;
   for (const Index f : patch.removed) {
     const Triangle& t = cage.face(f);
     const Corners at = corners_of(cage, f);
     old_defect = std::max(old_defect, shape_defect(at));
+    old_quality = std::min(old_quality, shape_quality(at));
     for (int i = 0; i < 3; ++i) {
       old_bend = std::min(old_bend, bend(at, corners_across(cage, at, t[(i + 1) % 3], t[i])));
     }
   }
   const double least_bend = std::min(limits.sharpest_bend, old_bend);
   const double most_defect = std::max(limits.worst_defect, old_defect);
+  const double least_quality = std::min(limits.least_quality, old_quality);
   for (std::size_t i = 0; i < patch.added.size(); ++i) {
     const Triangle& t = patch.added[i];
     const Corners at = corners_after(cage, patch, t);
-    if (shape_defect(at) > most_defect) {
+    if (shape_defect(at) > most_defect || shape_quality(at) < least_quality) {
       return false;
     }
     for (int k = 0; k < 3; ++k) {

@@ -18,7 +18,8 @@ enum class Placement {
 
 /// What a change may not do to the shape of the faces, unless it was as bad before.
 struct ShapeLimits {
-  double worst_defect = 8;     ///< of a face: see shape_defect()
+  double worst_defect = 8;     ///< of a face: see shape_defect(); it is hard on needles
+  double least_quality = 0.06; ///< of a face: see shape_quality(); it is hard on flat corners
   double sharpest_bend = -0.9; ///< of two neighbours: see bend(); 26 degrees between the faces
 };
 

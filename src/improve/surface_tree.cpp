@@ -232,6 +232,7 @@ void SurfaceTree::build(std::span<const Corners> corners) {
   for (const Index i : order) {
     triangles_.push_back(corners[i]);
   }
+  numbers_ = std::move(order);
 }
 
 std::array<float, 3> SurfaceTree::to_frame(const Vec3& p) const {
@@ -270,6 +271,7 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double e
       if (squared < bound) {
         bound = squared;
         best.point = at;
+        best.triangle = numbers_[entry.child & ~leaf_bit];
         most = limit();
       }
       continue;

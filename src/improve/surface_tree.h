@@ -39,6 +39,7 @@ public:
   struct Nearest {
     double distance = std::numeric_limits<double>::infinity();
     Vec3 point = Vec3::Zero();
+    Index triangle = ~Index{0}; ///< of the model
   };
 
   /// The point of the model nearest to p, if one is nearer than `within`; else the distance is
@@ -107,6 +108,7 @@ private:
   Vec3 origin_ = Vec3::Zero();
   double scale_ = 1; // the frame is (x - origin) * scale: the model fills about [-1, 1]^3
   std::vector<Corners> triangles_;
+  std::vector<Index> numbers_; // of the triangles in the model
   std::vector<Node> nodes_;
 };
 

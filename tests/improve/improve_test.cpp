@@ -9,6 +9,9 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace cagewright {
 namespace {
 
@@ -169,6 +172,37 @@ TEST(Improve, IsTheSameOnOneThreadAsOnMany) {
     EXPECT_EQ(one->cage.positions, many->cage.positions);
     EXPECT_EQ(one->cage.triangles, many->cage.triangles);
   });
+}
+
+TEST(Improve, IsFinerWhereTheModelIsDenser) {
+  const TriangleMesh sphere = make_icosphere(4);
+  const auto share_above = [&](double dense) {
+    std::vector<double> density;
+    for (const Vec3& p : sphere.positions) {
+      density.push_back(p.z() > 0 ? dense : 1);
+    }
+    const Result<Envelope> start = envelope(sphere, {.resolution = 24});
+    const Result<Improved> made =
+        improve(start->mesh, sphere, {.vertices = 60, .rounds = 1, .density = density});
+    EXPECT_TRUE(validate_cage(made->cage, sphere)->valid());
+    const auto above = std::count_if(made->cage.positions.begin(), made->cage.positions.end(),
+                                     [](const Vec3& p) { return p.z() > 0; });
+    return static_cast<double>(above) / static_cast<double>(made->cage.positions.size());
+  };
+  EXPECT_NEAR(share_above(1), 0.5, 0.1);
+  EXPECT_GT(share_above(4), 0.68); // edges half as long: four vertices in five
+  EXPECT_GT(share_above(16), 0.8);
+}
+
+TEST(Improve, DoesNotMindTheUnitOfTheDensity) {
+  const TriangleMesh sphere = make_icosphere(3);
+  const Result<Envelope> start = envelope(sphere, {.resolution = 16});
+  const std::vector<double> even(sphere.positions.size(), 7.5);
+  const ImproveOptions options{.vertices = 20, .rounds = 0};
+  ImproveOptions dense = options;
+  dense.density = even;
+  EXPECT_EQ(improve(start->mesh, sphere, dense)->cage.positions,
+            improve(start->mesh, sphere, options)->cage.positions);
 }
 
 TEST(Improve, RefusesWhatItCannotWorkWith) {
