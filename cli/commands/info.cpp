@@ -199,6 +199,10 @@ std::string describe_mirror(const Info& info) {
     return "No mirror plane\n";
   }
   constexpr double percent = 100;
+  constexpr double rounding = 1e-9;
+  if (info.mirror->high_error < rounding) {
+    return fmt::format("Mirror plane {}: its exact mirror image\n", text_of(*info.mirror));
+  }
   return fmt::format("Mirror plane {}: off its mirror image by {:.2g} % of the diagonal in the "
                      "mean, {:.2g} % at most but for a hundredth of the surface\n",
                      text_of(*info.mirror), percent * info.mirror->mean_error,

@@ -93,6 +93,23 @@ class Generate(InAFolder):
         leaves = [i for i, node in enumerate(data["tree"]) if not node["children"]]
         self.assertEqual(data["boxes"], leaves)
 
+    def test_mirrors_cages_exactly_as_written_and_tells_the_pairs(self):
+        cage, figures = self.folder / "c.obj", self.folder / "c.json"
+        made = run("generate", CREATURE, "-o", cage, "--vertices", 40, "--symmetry", "auto", "--json", figures)
+        self.assertEqual(made.returncode, DONE, made.stderr)
+        self.assertIn("mirrored in the plane x = 0", made.stdout)
+        self.assertEqual(run("check", CREATURE, cage).returncode, DONE)
+        lines = [line.split() for line in cage.read_text().splitlines()]
+        points = [tuple(map(float, line[1:4])) for line in lines if line[:1] == ["v"]]
+        symmetry = json.loads(figures.read_text())["symmetry"]
+        self.assertEqual(symmetry["plane"], {"normal": [1, 0, 0], "offset": 0})
+        self.assertEqual(len(symmetry["vertex_partners"]), len(points))
+        for (x, y, z), partner in zip(points, symmetry["vertex_partners"]):
+            self.assertEqual(points[partner], (-x, y, z))
+        faces = [[int(c) - 1 for c in line[1:]] for line in lines if line[:1] == ["f"]]
+        for face, partner in zip(faces, symmetry["face_partners"]):
+            self.assertEqual({symmetry["vertex_partners"][v] for v in face}, set(faces[partner]))
+
     def test_gives_the_same_bytes_on_any_number_of_threads(self):
         outputs = []
         for threads in (1, 2, 4):
@@ -175,9 +192,9 @@ class Info(InAFolder):
         described = self.folder / "info.json"
         told = run("info", self.file("cube.obj", CUBE), "--json", described)
         self.assertEqual(told.returncode, DONE, told.stderr)
-        for word in ("8 vertices", "closed", "genus", "volume"):
+        for word in ("8 vertices", "closed", "genus", "volume", "Mirror plane x = 0"):
             self.assertIn(word, told.stdout)
-        json.loads(described.read_text())
+        self.assertEqual(json.loads(described.read_text())["mirror_plane"]["normal"], [1, 0, 0])
 
 
 class Help(unittest.TestCase):
