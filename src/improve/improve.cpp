@@ -124,7 +124,7 @@ private:
   // Tightens the cage, and moves vertices to where they pay: splits where a new vertex helps most,
   // then collapses what costs least. \returns the objective
   double refine(const Progress& progress) {
-    double best = settle(8, progress.part(0, 0.4));
+    double best = settle(6, progress.part(0, 0.4));
     WorkingCage kept = cage_;
     const std::size_t count = std::max(budget_, cage_.mesh.vertex_count());
     for (int round = 0; round < options_.rounds && !progress.cancelled(); ++round) {
@@ -134,7 +134,7 @@ private:
       flip_edges(cage_, guard_, objective_, most_valence_);
       relax_steps(2, part.part(0, 0.2));
       reduce(Placement::clear_of_model, count, part.part(0.2, 0.4));
-      const double value = settle(5, part.part(0.4, 1));
+      const double value = settle(4, part.part(0.4, 1));
       if (cage_.mesh.vertex_count() > count || value >= best) {
         break;
       }
@@ -147,7 +147,7 @@ private:
       }
     }
     cage_ = std::move(kept);
-    return std::min(best, relax_steps(6, Progress()));
+    return std::min(best, relax_steps(4, Progress()));
   }
 
   [[nodiscard]] bool over_budget() const { return cage_.mesh.vertex_count() > budget_; }

@@ -20,7 +20,7 @@ struct ImproveOptions {
   double clearance = 0.002;
   int most_valence = 10; ///< faces at a vertex, unless the start has more or the budget needs more
   /// How often the cage is refined and simplified again, to move vertices to where they pay.
-  int rounds = 2;
+  int rounds = 3;
   double square = 40;  ///< weight of large gaps: see ObjectiveWeights
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
   /// How many times its final number of vertices the cage has when the quick way of simplifying it,
