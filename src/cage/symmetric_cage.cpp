@@ -21,6 +21,10 @@ constexpr double improved = 0.95;
 /// Of the diagonal: a model this near to its mirror image is enclosed with it by any box.
 constexpr double same = 1e-6;
 
+/// Of the diagonal. A model further off its mirror image, in the mean, is mirrored only if that is
+/// insisted on: a cage round both is looser by about half of it.
+constexpr double nearly = 0.001;
+
 /// What is known before the first vertex of the cage is.
 struct Task {
   TriangleView model;
@@ -129,9 +133,13 @@ ChosenPlane choose_mirror_plane(TriangleView model, Symmetry symmetry, const Pro
     return {};
   case Symmetry::automatic:
     if (const auto plane = detect_mirror_plane(model, {}, progress)) {
-      return {plane, ""};
+      if (plane->mean_error <= nearly) {
+        return {plane, ""};
+      }
+      return {std::nullopt, "the model is only roughly its own mirror image, and a cage round both "
+                            "would be looser"};
     }
-    return {std::nullopt, "the model is not nearly enough its own mirror image in any plane"};
+    return {std::nullopt, "the model is not its own mirror image in any plane"};
   case Symmetry::x:
   case Symmetry::y:
   case Symmetry::z:
