@@ -1,37 +1,56 @@
 #include "app/commands/editor.h"
 
 #include "app/commands/change_state.h"
+#include "app/document/time_line.h"
 
 #include <utility>
 
 namespace cagewright::app {
 
-Editor::Editor(Document& document, QObject* parent) : QObject(parent), document_(document) {}
+Editor::Editor(Document& document, QObject* parent)
+    : QObject(parent), document_(document), live_check_(document) {
+  undo_stack_.setUndoLimit(500);
+}
+
+Editor::~Editor() = default;
 
 void Editor::begin_move(std::vector<Index> vertices) {
+  cancel_move();
   move_.emplace(Move{std::move(vertices), document_.state()});
   document_.adopt_shown_cage();
+  live_check_.begin();
 }
 
 void Editor::move_to(std::span<const Vec3> positions) {
-  document_.move_cage(move_->vertices, positions);
+  document_.move_cage(move_->vertices, live_check_.move(move_->vertices, positions));
+  if (live_check_.stopped()) {
+    Q_EMIT message(tr("Stopped where the cage would become invalid"));
+  }
 }
 
 void Editor::end_move(const QString& text) {
   if (!move_) {
     return;
   }
-  State before = std::exchange(move_, std::nullopt)->before;
-  if (before.cage == document_.state().cage) {
-    return;
+  Move move = *std::exchange(move_, std::nullopt);
+  live_check_.end();
+  if (move.before.cage != document_.state().cage) {
+    undo_stack_.push(new ChangeState(document_, std::move(move.before), document_.state(), text));
   }
-  undo_stack_.push(new ChangeState(document_, std::move(before), document_.state(), text));
 }
 
 void Editor::cancel_move() {
   if (move_) {
+    live_check_.end();
     document_.set_state(std::exchange(move_, std::nullopt)->before);
   }
+}
+
+void Editor::move(std::vector<Index> vertices, std::span<const Vec3> positions,
+                  const QString& text) {
+  begin_move(std::move(vertices));
+  move_to(positions);
+  end_move(text);
 }
 
 void Editor::select(Selection selection) {
@@ -43,18 +62,112 @@ void Editor::select(Selection selection) {
   change(std::move(state), tr("Select"));
 }
 
+void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
+                          std::shared_ptr<const BoxDecomposition> stages, const QString& text) {
+  State state;
+  state.selection.mode = document_.selection().mode;
+  state.stages = stages ? std::move(stages) : document_.stages();
+  state.cage = std::make_shared<const std::vector<Vec3>>(cage->positions);
+  state.rest = std::move(cage);
+  change(std::move(state), text);
+}
+
 void Editor::edit_topology(PolygonMesh cage, Selection selection, const QString& text) {
-  State state = document_.state();
+  State state;
+  state.selection = std::move(selection);
+  state.stages = document_.stages();
   state.cage = std::make_shared<const std::vector<Vec3>>(cage.positions);
   state.rest = std::make_shared<const PolygonMesh>(std::move(cage));
+  change(std::move(state), text);
+}
+
+void Editor::bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const PolygonMesh> rest) {
+  State state = document_.state();
+  state.binding = std::move(binding);
+  state.cage = std::make_shared<const std::vector<Vec3>>(rest->positions);
+  state.rest = std::move(rest);
+  change(std::move(state), tr("Bind"));
+}
+
+void Editor::refine() {
+  State state = document_.state();
+  if (!state.binding) {
+    return;
+  }
   state.binding.reset();
-  state.selection = std::move(selection);
-  state.poses.clear();
-  state.time_line.keys.clear();
+  state.cage = std::make_shared<const std::vector<Vec3>>(state.rest->positions);
+  change(std::move(state), tr("Refine Cage"));
+}
+
+void Editor::reset_pose() {
+  State state = document_.state();
+  if (!state.rest) {
+    return;
+  }
+  state.cage = std::make_shared<const std::vector<Vec3>>(state.rest->positions);
+  change(std::move(state), tr("Reset"));
+}
+
+void Editor::add_pose(const QString& name) {
+  document_.adopt_shown_cage();
+  State state = document_.state();
+  state.poses.push_back({name, state.cage});
+  change(std::move(state), tr("Add Pose"));
+}
+
+void Editor::remove_pose(std::size_t pose) {
+  State state = document_.state();
+  state.poses.erase(state.poses.begin() + static_cast<std::ptrdiff_t>(pose));
+  change(std::move(state), tr("Remove Pose"));
+}
+
+void Editor::rename_pose(std::size_t pose, const QString& name) {
+  State state = document_.state();
+  if (state.poses[pose].name != name && !name.trimmed().isEmpty()) {
+    state.poses[pose].name = name.trimmed();
+    change(std::move(state), tr("Rename Pose"));
+  }
+}
+
+void Editor::update_pose(std::size_t pose) {
+  document_.adopt_shown_cage();
+  State state = document_.state();
+  state.poses[pose].positions = state.cage;
+  change(std::move(state), tr("Update Pose"));
+}
+
+void Editor::apply_pose(std::size_t pose) {
+  document_.set_time(std::nullopt);
+  document_.set_blend(1);
+  State state = document_.state();
+  state.cage = state.poses[pose].positions;
+  change(std::move(state), tr("Apply Pose"));
+}
+
+void Editor::set_keyframe(int frame) {
+  // On the time line what is shown is the cage at that time; otherwise it is the edited pose.
+  const std::span<const Vec3> shown = document_.shown_cage_positions();
+  State state = document_.state();
+  state.time_line =
+      with_keyframe(std::move(state.time_line),
+                    {frame, std::make_shared<const std::vector<Vec3>>(shown.begin(), shown.end())});
+  change(std::move(state), tr("Set Keyframe"));
+}
+
+void Editor::remove_keyframe(int frame) {
+  State state = document_.state();
+  state.time_line = without_keyframe(std::move(state.time_line), frame);
+  change(std::move(state), tr("Remove Keyframe"));
+}
+
+void Editor::set_time_line(TimeLine time_line, const QString& text) {
+  State state = document_.state();
+  state.time_line = std::move(time_line);
   change(std::move(state), text);
 }
 
 void Editor::change(State state, const QString& text) {
+  cancel_move();
   undo_stack_.push(new ChangeState(document_, document_.state(), std::move(state), text));
 }
 

@@ -2,6 +2,7 @@
 /// All edits of a document: each is a step that undo takes back.
 #pragma once
 
+#include "app/commands/live_check.h"
 #include "app/document/document.h"
 
 #include <QObject>
@@ -26,18 +27,20 @@ class Editor final : public QObject {
 
 public:
   explicit Editor(Document& document, QObject* parent = nullptr);
+  ~Editor() override;
 
   [[nodiscard]] Document& document() { return document_; }
   [[nodiscard]] QUndoStack& undo_stack() { return undo_stack_; }
+  [[nodiscard]] const QUndoStack& undo_stack() const { return undo_stack_; }
 
   // ---- Moving cage vertices
 
   /// Starts to move these vertices (ascending). Where something else than the edited pose is shown
   /// (blending, playing), that becomes the pose first.
   void begin_move(std::vector<Index> vertices);
-  /// Puts the vertices of begin_move() there: one position for each. With stop_at_contact, in
-  /// refine mode, they stop on the way from where they are now where the cage would become
-  /// invalid.
+  /// Puts the vertices of begin_move() there: one position for each. In refine mode the faces that
+  /// are wrong there are known at once; with stop_at_contact the vertices stop on the way from
+  /// where they are now where the cage would become invalid.
   void move_to(std::span<const Vec3> positions);
   /// Makes the movement a step of undo, if there was any.
   void end_move(const QString& text);
@@ -45,13 +48,39 @@ public:
   void cancel_move();
   [[nodiscard]] bool moving() const { return move_.has_value(); }
 
-  // ---- Single steps
+  /// A movement in one step, as by numbers that are typed.
+  void move(std::vector<Index> vertices, std::span<const Vec3> positions, const QString& text);
+
+  // ---- The cage as a whole
 
   /// Another selection.
   void select(Selection selection);
+  /// Another cage, to be refined; with the stages it was made from, or the present ones.
+  void replace_cage(std::shared_ptr<const PolygonMesh> cage,
+                    std::shared_ptr<const BoxDecomposition> stages, const QString& text);
   /// The cage after an edit of its topology, in refine mode: vertices and faces as they come. Poses
   /// and keyframes, which fit the old one, go.
   void edit_topology(PolygonMesh cage, Selection selection, const QString& text);
+  /// To deform mode: `rest` is the cage that the binding was made for.
+  void bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const PolygonMesh> rest);
+  /// Back to refine mode, with the cage at rest. Poses and keyframes stay while the topology does.
+  void refine();
+
+  // ---- Poses, in deform mode
+
+  void reset_pose();
+  void add_pose(const QString& name);
+  void remove_pose(std::size_t pose);
+  void rename_pose(std::size_t pose, const QString& name);
+  /// The cage as it is becomes the pose.
+  void update_pose(std::size_t pose);
+  /// The cage takes the pose.
+  void apply_pose(std::size_t pose);
+
+  void set_keyframe(int frame);
+  void remove_keyframe(int frame);
+  void set_time_line(TimeLine time_line, const QString& text);
+
   /// All that undo brings back at once.
   void change(State state, const QString& text);
 
@@ -68,6 +97,7 @@ private:
   Document& document_;
   QUndoStack undo_stack_;
   std::optional<Move> move_;
+  LiveCheck live_check_;
 };
 
 } // namespace cagewright::app

@@ -75,6 +75,10 @@ public:
   [[nodiscard]] std::span<const Vec3> rest_positions() const { return rest_; }
   [[nodiscard]] std::span<const Vec3> cage_rest_positions() const { return cage_rest_; }
 
+  /// For each of the P vertices the sum of its weights for these cage vertices (each < C): how far
+  /// it goes along when they all move alike. Cost: k P weights are read.
+  [[nodiscard]] std::vector<float> influence(std::span<const Index> cage_vertices) const;
+
   /// Vertices of the model that have no weights, and stay where they are.
   [[nodiscard]] std::size_t unbound() const { return unbound_; }
   /// How far a vertex may be from where exact weights of the chosen storage would put it now, in

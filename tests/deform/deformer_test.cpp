@@ -123,6 +123,23 @@ TEST_P(DeformerWith, MovesTheSameInOneStepAndVertexByVertex) {
   EXPECT_LT(greatest_distance(at_once.normals(), by_steps.normals()), 1e-4);
 }
 
+TEST_P(DeformerWith, TellsHowFarVerticesGoAlong) {
+  Deformer deformer = bound(options);
+  const std::vector<Index> moved = {2, 17, 40};
+  const std::vector<float> influence = deformer.influence(moved);
+  const std::vector<Vec3> rest(deformer.positions().begin(), deformer.positions().end());
+  for (const Index v : moved) {
+    deformer.move_cage_vertex(v, deformer.cage_positions()[v] + Vec3(0, 2, 0));
+  }
+  deformer.update();
+  ASSERT_EQ(influence.size(), rest.size());
+  for (std::size_t p = 0; p < rest.size(); ++p) {
+    EXPECT_NEAR(deformer.positions()[p].y() - rest[p].y(), 2 * influence[p], 1e-6) << p;
+  }
+  const std::vector<float> none = deformer.influence({});
+  EXPECT_EQ(*std::ranges::max_element(none), 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(AllStorages, DeformerWith,
                          testing::Values(WeightStorage::full, WeightStorage::single,
                                          WeightStorage::compact),

@@ -1,0 +1,38 @@
+/// \file
+/// Projects as files: all that a session has made, apart from the model itself.
+#pragma once
+
+#include "app/document/generate_settings.h"
+#include "app/document/layers.h"
+#include "app/document/state.h"
+#include "app/edit/tool_settings.h"
+#include "core/result.h"
+
+#include <QJsonObject>
+
+#include <cstdint>
+#include <filesystem>
+
+namespace cagewright::app {
+
+struct Project {
+  std::filesystem::path model_path; ///< absolute; empty: no model
+  std::uint64_t model_checksum = 0; ///< of its positions
+  State state;                      ///< without binding and stages
+  bool bound = false;               ///< the model is to be bound again
+  GenerateSettings settings;
+  Layers layers;
+  ToolSettings tools;
+  QJsonObject camera;
+};
+
+/// The path of the model is kept both absolute and relative to the project, so that both may move
+/// together. Numbers read back as the same doubles. The file is complete or not there.
+/// Errors: cannot_write.
+Status write_project(const Project& project, const std::filesystem::path& path);
+
+/// Errors: cannot_open, malformed (no project, or numbers that do not fit together), unsupported
+/// (of a later version).
+Result<Project> read_project(const std::filesystem::path& path);
+
+} // namespace cagewright::app

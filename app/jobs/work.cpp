@@ -1,0 +1,184 @@
+#include "app/jobs/work.h"
+
+#include "app/document/binding.h"
+#include "deform/stream.h"
+#include "deform/weights_file.h"
+#include "io/mesh_format.h"
+#include "io/read_mesh.h"
+#include "io/write_mesh.h"
+#include "mesh/triangulate.h"
+#include "mesh/weld.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace cagewright::app {
+namespace {
+
+constexpr double most_weight_bytes = 1.5e9;
+
+/// The normals that the model's file stores, ready to follow.
+std::optional<NormalField> stored_normals(const Model& model) {
+  if (model.file_normals.normals.empty()) {
+    return std::nullopt;
+  }
+  // Corners without a normal share a slot of their own, behind the others.
+  const auto none = static_cast<Index>(model.file_normals.normals.size());
+  NormalSlots slots{model.file_normals.of_corner, none + std::size_t{1},
+                    model.file_normals.normals};
+  slots.given.push_back(Vec3::Zero());
+  std::ranges::replace(slots.of_corner, FileNormals::none, none);
+  return NormalField(model.mesh, std::move(slots));
+}
+
+Status write_model(const Model& model, std::span<const Vec3> positions,
+                   std::optional<NormalField>& normals, const std::filesystem::path& path) {
+  if (model.path.empty() || format_of_name(model.path) != format_of_name(path)) {
+    PolygonMesh moved = model.mesh;
+    moved.positions.assign(positions.begin(), positions.end());
+    return write_mesh(moved, path);
+  }
+  if (!normals) {
+    return rewrite_positions(model.path, positions, {}, path);
+  }
+  normals->update(positions);
+  return rewrite_positions(model.path, positions,
+                           normals->normals().first(normals->normals().size() - 1), path);
+}
+
+} // namespace
+
+Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
+                           const Progress& progress) {
+  if (settings.method == CageMethod::union_of_boxes) {
+    Result<GeneratedCage> made = generate_cage(model.view(), settings.options.boxes, progress);
+    if (!made) {
+      return made.error();
+    }
+    return MadeCage{std::make_shared<const PolygonMesh>(made->cage),
+                    std::make_shared<const BoxDecomposition>(std::move(made->boxes)),
+                    {}};
+  }
+  Result<BudgetCage> made = make_budget_cage(model.view(), settings.options, progress);
+  if (!made) {
+    return made.error();
+  }
+  MadeCage result{std::make_shared<const PolygonMesh>(made->cage), nullptr, {}};
+  if (made->boxes) {
+    result.stages = std::make_shared<const BoxDecomposition>(std::move(made->boxes->boxes));
+  }
+  if (!made->report.reached) {
+    result.remark = QString::fromStdString(made->report.why_not);
+  }
+  return result;
+}
+
+Result<std::shared_ptr<const BoxDecomposition>>
+make_stages(const Model& model, const GenerateSettings& settings, const Progress& progress) {
+  Result<BoxDecomposition> boxes = decompose(model.view(), settings.options.boxes.boxes, progress);
+  if (!boxes) {
+    return boxes.error();
+  }
+  return std::make_shared<const BoxDecomposition>(std::move(*boxes));
+}
+
+Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path& path) {
+  Result<PolygonMesh> mesh = read_mesh(path);
+  if (!mesh) {
+    return mesh.error();
+  }
+  return std::make_shared<const PolygonMesh>(weld(*mesh));
+}
+
+Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const PolygonMesh& cage,
+                                                  const Progress& progress) {
+  DeformerOptions options;
+  const double bytes = 4.0 * static_cast<double>(model.mesh.positions.size()) *
+                       static_cast<double>(cage.positions.size());
+  if (bytes > most_weight_bytes) {
+    options.storage = WeightStorage::compact;
+  }
+  Result<Deformer> deformer = Deformer::bind(model.mesh, cage, options, {}, progress);
+  if (!deformer) {
+    return deformer.error();
+  }
+  return std::make_shared<const Binding>(std::move(*deformer));
+}
+
+Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
+                              const Progress& progress) {
+  Result<ValidityReport> report =
+      validate_cage(cage, model != nullptr ? model->view() : TriangleView{},
+                    {.allow_pieces = false, .max_listed = 500, .first_only = false}, progress);
+  if (!report) {
+    return report.error();
+  }
+  JudgedCage judged;
+  for (const Violation& violation : report->violations) {
+    switch (violation.kind) {
+    case ViolationKind::bad_corner:
+    case ViolationKind::degenerate_face:
+    case ViolationKind::duplicate_face:
+      judged.offending_faces.push_back(violation.elements[0]);
+      break;
+    case ViolationKind::self_intersection:
+      judged.offending_faces.insert(judged.offending_faces.end(), violation.elements.begin(),
+                                    violation.elements.end());
+      break;
+    case ViolationKind::vertex_on_cage:
+    case ViolationKind::face_contact:
+      judged.offending_faces.push_back(violation.elements[1]);
+      break;
+    default:
+      break;
+    }
+  }
+  std::ranges::sort(judged.offending_faces);
+  const auto repeated = std::ranges::unique(judged.offending_faces);
+  judged.offending_faces.erase(repeated.begin(), repeated.end());
+  std::erase_if(judged.offending_faces, [&](Index f) { return f >= cage.face_count(); });
+  judged.report = std::make_shared<const ValidityReport>(std::move(*report));
+  return judged;
+}
+
+Status export_models(const Model& model, const PolygonMesh& cage_at_rest,
+                     const std::vector<ModelOutput>& outputs, const Progress& progress) {
+  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage_at_rest);
+  if (!solver) {
+    return solver.error();
+  }
+  std::vector<std::vector<Vec3>> poses;
+  for (const ModelOutput& output : outputs) {
+    poses.push_back(*output.cage);
+  }
+  const Result<StreamedPoses> moved = deform_streaming(*solver, cage_at_rest.positions, poses,
+                                                       model.mesh.positions, progress.part(0, 0.8));
+  if (!moved) {
+    return moved.error();
+  }
+  std::optional<NormalField> normals = stored_normals(model);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (progress.cancelled()) {
+      return Error::cancelled();
+    }
+    progress(0.8 + 0.2 * static_cast<double>(i) / static_cast<double>(outputs.size()), "writing");
+    if (Status s = write_model(model, moved->positions[i], normals, outputs[i].path); !s) {
+      return s;
+    }
+  }
+  return success();
+}
+
+Status export_weights(const Model& model, const PolygonMesh& cage,
+                      const std::filesystem::path& path, const Progress& progress) {
+  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage);
+  if (!solver) {
+    return solver.error();
+  }
+  const Result<BoundCounts> written =
+      bind_to_file(*solver, model.mesh.positions, cage, path, progress);
+  return written ? success() : Status(written.error());
+}
+
+} // namespace cagewright::app

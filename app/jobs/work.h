@@ -1,0 +1,69 @@
+/// \file
+/// The work of the application's jobs: from values to values, on any thread.
+#pragma once
+
+#include "app/document/generate_settings.h"
+#include "app/document/model.h"
+#include "app/document/state.h"
+#include "core/progress.h"
+#include "core/result.h"
+#include "validate/cage_metrics.h"
+#include "validate/validate_cage.h"
+
+#include <QString>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace cagewright::app {
+
+struct MadeCage {
+  std::shared_ptr<const PolygonMesh> cage;
+  std::shared_ptr<const BoxDecomposition> stages; ///< how the model was split; null for an envelope
+  QString remark;                                 ///< why the budget was not met, or empty
+};
+
+/// Makes a cage as the settings say. Errors: those of make_budget_cage() and generate_cage().
+Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
+                           const Progress& progress = {});
+
+/// Splits the model into boxes only, to look at. Errors: those of decompose().
+Result<std::shared_ptr<const BoxDecomposition>>
+make_stages(const Model& model, const GenerateSettings& settings, const Progress& progress = {});
+
+/// Reads a cage from a file. Vertices that an STL file or a program has repeated are merged.
+/// Errors: those of read_mesh().
+Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path& path);
+
+/// Binds the model to the cage. Weights that would take more than 1.5 GB are kept in 16 bits.
+/// Errors: those of Deformer::bind().
+Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const PolygonMesh& cage,
+                                                  const Progress& progress = {});
+
+struct JudgedCage {
+  std::shared_ptr<const ValidityReport> report;
+  std::vector<Index> offending_faces; ///< of the cage, ascending
+};
+
+/// Judges the cage against the model (which may be null: then alone). Errors: cancelled.
+Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
+                              const Progress& progress = {});
+
+/// One model file to write.
+struct ModelOutput {
+  std::filesystem::path path;
+  SharedPositions cage; ///< the pose
+};
+
+/// Writes the model in each of the poses. A file of the same format as the model's keeps all else
+/// that is in it, with its normals turned along; others get positions and faces.
+/// Errors: cannot_write, unsupported, invalid_cage, cancelled.
+Status export_models(const Model& model, const PolygonMesh& cage_at_rest,
+                     const std::vector<ModelOutput>& outputs, const Progress& progress = {});
+
+/// Binds once more and writes the weights as NumPy's .npz. Errors: cannot_write, cancelled.
+Status export_weights(const Model& model, const PolygonMesh& cage,
+                      const std::filesystem::path& path, const Progress& progress = {});
+
+} // namespace cagewright::app

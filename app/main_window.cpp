@@ -1,0 +1,353 @@
+#include "app/main_window.h"
+
+#include "app/panels/figures_panel.h"
+#include "app/panels/generate_panel.h"
+#include "app/panels/guide_bar.h"
+#include "app/panels/layers_panel.h"
+#include "app/panels/poses_panel.h"
+#include "app/panels/sections_panel.h"
+#include "app/panels/selection_panel.h"
+#include "app/panels/time_line_panel.h"
+#include "app/panels/tool_bar.h"
+#include "app/theme.h"
+#include "app/view/viewport.h"
+
+#include <QApplication>
+#include <QCloseEvent>
+#include <QDockWidget>
+#include <QDragEnterEvent>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QLabel>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QProgressBar>
+#include <QScrollArea>
+#include <QSettings>
+#include <QStatusBar>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <utility>
+
+namespace cagewright::app {
+namespace {
+
+QDockWidget* dock(QMainWindow* window, const char* name, const QString& title, QWidget* content,
+                  Qt::DockWidgetArea area, bool scrolls) {
+  auto* made = new QDockWidget(title, window);
+  made->setObjectName(name);
+  if (scrolls) {
+    auto* scroll = new QScrollArea;
+    scroll->setWidget(content);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    made->setWidget(scroll);
+  } else {
+    made->setWidget(content);
+  }
+  window->addDockWidget(area, made);
+  return made;
+}
+
+QString file_of(const QDropEvent& event) {
+  const QList<QUrl> urls = event.mimeData()->urls();
+  return urls.isEmpty() ? QString() : urls.first().toLocalFile();
+}
+
+} // namespace
+
+MainWindow::MainWindow(const QDir& recovery_folder, QWidget* parent)
+    : QMainWindow(parent), preferences_(Preferences::load()), recovery_(session_, recovery_folder) {
+  setAcceptDrops(true);
+  setDockNestingEnabled(true);
+  resize(1440, 900);
+  make_panels();
+  make_status_bar();
+  make_menus();
+  connect_session();
+  first_layout_ = saveState();
+  const QSettings settings;
+  restoreGeometry(settings.value("window/geometry").toByteArray());
+  restoreState(settings.value("window/state").toByteArray());
+  session_.set_settings(generate_settings_from_json(settings.value("generate").toJsonObject()));
+  apply(preferences_);
+  update_title();
+  update_actions();
+  viewport_->setFocus();
+}
+
+MainWindow::~MainWindow() {
+  disconnect(&session_, nullptr, this, nullptr);
+  disconnect(&session_.document(), nullptr, this, nullptr);
+  disconnect(&session_.jobs(), nullptr, this, nullptr);
+  disconnect(&session_.editor().undo_stack(), nullptr, this, nullptr);
+  // The view and the panels look at the session, which goes before them otherwise.
+  for (QObject* child : QObjectList(children())) {
+    if (child->isWidgetType()) {
+      delete child;
+    }
+  }
+}
+
+void MainWindow::make_panels() {
+  auto* middle = new QWidget;
+  auto* layout = new QVBoxLayout(middle);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(0);
+  guide_ = new GuideBar(session_);
+  layout->addWidget(guide_);
+  viewport_ = new Viewport(session_.editor());
+  viewport_->setObjectName("viewport");
+  viewport_->installEventFilter(this);
+  layout->addWidget(viewport_, 1);
+  setCentralWidget(middle);
+
+  welcome_ = new QLabel(viewport_);
+  welcome_->setObjectName("welcome");
+  welcome_->setAlignment(Qt::AlignCenter);
+  welcome_->setTextFormat(Qt::RichText);
+  welcome_->setAttribute(Qt::WA_TransparentForMouseEvents);
+  welcome_->setText(
+      tr("<p style='font-size:20pt'>Drop a model here</p>"
+         "<p style='font-size:12pt'>or press <b>Ctrl+O</b> to open one</p>"
+         "<p style='font-size:11pt'>Then: <b>Generate Cage</b> &rarr; <b>Bind</b> &rarr; drag the "
+         "cage's vertices &rarr; <b>Export Model</b></p>"));
+
+  tools_ = new ToolBar(session_.document());
+  addToolBar(tools_);
+
+  generate_ = new GeneratePanel(session_);
+  layers_ = new LayersPanel(session_);
+  poses_ = new PosesPanel(session_.editor());
+  time_line_ = new TimeLinePanel(session_.editor());
+  sections_ = new SectionsPanel(session_.document());
+  auto* figures = new FiguresPanel(session_.document());
+  auto* selection = new SelectionPanel(session_.editor());
+  dock(this, "dock_generate", tr("Make a Cage"), generate_, Qt::LeftDockWidgetArea, false);
+  dock(this, "dock_figures", tr("Figures"), figures, Qt::RightDockWidgetArea, true);
+  QDockWidget* select =
+      dock(this, "dock_selection", tr("Selection"), selection, Qt::RightDockWidgetArea, true);
+  QDockWidget* layers =
+      dock(this, "dock_layers", tr("Layers"), layers_, Qt::RightDockWidgetArea, true);
+  QDockWidget* poses = dock(this, "dock_poses", tr("Poses"), poses_, Qt::RightDockWidgetArea, true);
+  tabifyDockWidget(layers, poses);
+  layers->raise();
+  QDockWidget* line =
+      dock(this, "dock_time_line", tr("Time Line"), time_line_, Qt::BottomDockWidgetArea, false);
+  QDockWidget* sections = dock(this, "dock_sections", tr("Boxes and Cross-Sections"), sections_,
+                               Qt::BottomDockWidgetArea, false);
+  tabifyDockWidget(line, sections);
+  line->raise();
+  setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
+  setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+  resizeDocks({select, layers}, {150, 380}, Qt::Vertical);
+  connect(generate_, &GeneratePanel::loadCageRequested, this, &MainWindow::choose_cage);
+  connect(guide_, &GuideBar::openRequested, this, &MainWindow::choose_model);
+  connect(guide_, &GuideBar::exportRequested, this, &MainWindow::export_model);
+}
+
+void MainWindow::make_status_bar() {
+  step_ = new QLabel;
+  progress_ = new QProgressBar;
+  progress_->setObjectName("progress");
+  progress_->setRange(0, 1000);
+  progress_->setTextVisible(false);
+  progress_->setFixedWidth(200);
+  cancel_ = new QToolButton;
+  cancel_->setObjectName("cancel");
+  cancel_->setText(tr("Cancel"));
+  cancel_->setToolTip(tr("Stops what is under way; nothing is changed (Ctrl+.)"));
+  mode_ = new QLabel;
+  mode_->setObjectName("mode");
+  mode_->setToolTip(tr("Refine: the cage itself is edited. Deform: the cage moves the model"));
+  for (QWidget* widget : std::initializer_list<QWidget*>{step_, progress_, cancel_}) {
+    statusBar()->addPermanentWidget(widget);
+    widget->hide();
+  }
+  statusBar()->addPermanentWidget(mode_);
+  connect(cancel_, &QToolButton::clicked, &session_, &Session::cancel);
+}
+
+void MainWindow::connect_session() {
+  const auto say = [this](const QString& text) { statusBar()->showMessage(text, 15000); };
+  connect(&session_, &Session::message, this, say);
+  connect(viewport_, &Viewport::hint, this,
+          [this](const QString& text) { statusBar()->showMessage(text); });
+  connect(&session_, &Session::failed, this, &MainWindow::show_error);
+  connect(&session_, &Session::titleChanged, this, &MainWindow::update_title);
+  connect(&session_, &Session::opened, this, [](const QString& path) { add_recent_file(path); });
+  connect(&session_, &Session::cameraRestored, this, [this](const QJsonObject& camera) {
+    if (camera.isEmpty()) {
+      viewport_->frame_all();
+    } else {
+      viewport_->set_camera_state(camera);
+    }
+  });
+  connect(&session_, &Session::modelMissing, this,
+          [this](const QString& project, const QString& model) {
+            const QString chosen = QFileDialog::getOpenFileName(
+                this, tr("Where is %1?").arg(QFileInfo(model).fileName()),
+                QFileInfo(project).path(), model_filter(false));
+            if (chosen.isEmpty()) {
+              show_error(tr("Open Project"), tr("The project's model is not there: %1").arg(model));
+            } else {
+              session_.open_project_with_model(project.toStdString(), chosen.toStdString());
+            }
+          });
+  session_.set_camera_source([this] { return viewport_->camera_state(); });
+
+  JobRunner& jobs = session_.jobs();
+  connect(&jobs, &JobRunner::started, this, [this](const QString& title) {
+    statusBar()->clearMessage();
+    step_->setText(title + "...");
+    progress_->setValue(0);
+    cancel_->setEnabled(true);
+    for (QWidget* widget : std::initializer_list<QWidget*>{step_, progress_, cancel_}) {
+      widget->show();
+    }
+    update_actions();
+  });
+  connect(&jobs, &JobRunner::progressed, this,
+          [this](double fraction, const QString& step, const QString& left) {
+            progress_->setValue(static_cast<int>(1000 * fraction));
+            step_->setText(
+                QString("%1: %2%3")
+                    .arg(session_.jobs().title(), step, left.isEmpty() ? left : ", " + left));
+          });
+  connect(&jobs, &JobRunner::finished, this, [this] {
+    for (QWidget* widget : std::initializer_list<QWidget*>{step_, progress_, cancel_}) {
+      widget->hide();
+    }
+    update_actions();
+  });
+  Document& document = session_.document();
+  connect(&document, &Document::modelChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::cageChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::modeChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::posesChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::timeLineChanged, this, &MainWindow::update_actions);
+}
+
+void MainWindow::update_title() {
+  const QString title = session_.title();
+  setWindowTitle(title.isEmpty() ? tr("Cagewright") : title + "[*] - " + tr("Cagewright"));
+  setWindowModified(!title.isEmpty() && session_.modified());
+}
+
+void MainWindow::update_actions() {
+  for (const Need& need : needs_) {
+    need.action->setEnabled(need.met());
+  }
+  const Document& document = session_.document();
+  mode_->setText(!document.has_cage()              ? QString()
+                 : document.mode() == Mode::refine ? tr("Refine")
+                                                   : tr("Deform"));
+  welcome_->setVisible(!document.has_model() && !document.has_cage());
+}
+
+void MainWindow::apply(const Preferences& preferences) {
+  preferences_ = preferences;
+  const Theme theme = theme_named(preferences.theme);
+  apply_theme(*qApp, theme);
+  viewport_->set_dark(theme == Theme::dark);
+  sections_->set_dark(theme == Theme::dark);
+  welcome_->setStyleSheet(theme == Theme::dark ? "color: #c9ccd1" : "color: #4a4d52");
+  recovery_.set_interval(preferences.autosave_seconds);
+  guide_->setVisible(preferences.hints);
+}
+
+void MainWindow::show_error(const QString& title, const QString& text) {
+  auto* box = new QMessageBox(QMessageBox::Warning, title, text, QMessageBox::Ok, this);
+  box->setObjectName("error");
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  box->open(); // not modal for the program: jobs go on
+}
+
+void MainWindow::open(const QString& path, const QString& cage) {
+  if (may_discard()) {
+    session_.open(path.toStdString(), cage.toStdString());
+  }
+}
+
+void MainWindow::offer_recovery() {
+  for (const QString& path : recovery_.abandoned()) {
+    const auto answer = QMessageBox::question(
+        this, tr("Recover"),
+        tr("The program did not end as it should. Work of %1 was kept. Go on with it?")
+            .arg(QLocale().toString(QFileInfo(path).lastModified(), QLocale::ShortFormat)),
+        QMessageBox::Yes | QMessageBox::No | QMessageBox::Discard, QMessageBox::Yes);
+    if (answer == QMessageBox::Yes) {
+      session_.recover(path.toStdString());
+      return;
+    }
+    if (answer == QMessageBox::Discard) {
+      Recovery::discard(path);
+    }
+  }
+}
+
+bool MainWindow::may_discard() {
+  if (!preferences_.ask_before_closing || !session_.modified()) {
+    return true;
+  }
+  const auto answer = QMessageBox::question(
+      this, tr("Unsaved Work"), tr("Save the project before going on?"),
+      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
+  return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  if (!may_discard()) {
+    event->ignore();
+    return;
+  }
+  session_.cancel();
+  QSettings settings;
+  settings.setValue("window/geometry", saveGeometry());
+  settings.setValue("window/state", saveState());
+  settings.setValue("generate", to_json(session_.settings()));
+  preferences_.save();
+  event->accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  if (!file_of(*event).isEmpty()) {
+    event->acceptProposedAction();
+  }
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  const QString file = file_of(*event);
+  event->acceptProposedAction();
+  // Not from within the drop: the program that the file comes from waits for its end.
+  QMetaObject::invokeMethod(
+      this, [this, file] { open(file); }, Qt::QueuedConnection);
+}
+
+bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == viewport_) {
+    if (event->type() == QEvent::Resize) {
+      welcome_->setGeometry(viewport_->rect());
+    } else if (event->type() == QEvent::KeyPress || event->type() == QEvent::KeyRelease) {
+      const auto* key = static_cast<QKeyEvent*>(event);
+      if (key->key() == Qt::Key_C && key->modifiers() == Qt::NoModifier) {
+        if (!key->isAutoRepeat() && session_.document().mode() == Mode::deform) {
+          session_.document().set_comparing(event->type() == QEvent::KeyPress);
+        }
+        return true;
+      }
+    } else if (event->type() == QEvent::FocusOut) {
+      session_.document().set_comparing(false);
+    }
+  }
+  return QMainWindow::eventFilter(watched, event);
+}
+
+void MainWindow::reset_panels() {
+  restoreState(first_layout_);
+}
+
+} // namespace cagewright::app

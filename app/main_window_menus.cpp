@@ -1,0 +1,435 @@
+// The menus of the main window: what there is to do, and by which keys.
+#include "app/main_window.h"
+#include "app/panels/guide_bar.h"
+#include "app/panels/layers_panel.h"
+#include "app/panels/poses_panel.h"
+#include "app/panels/time_line_panel.h"
+#include "app/panels/tool_bar.h"
+#include "app/view/viewport.h"
+
+#include <QActionGroup>
+#include <QApplication>
+#include <QDockWidget>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QInputDialog>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QSettings>
+#include <QStatusBar>
+
+#include <utility>
+
+namespace cagewright::app {
+
+QAction* MainWindow::add(QMenu* menu, const char* name, const QString& text,
+                         const QKeySequence& keys, const QString& tip,
+                         const std::function<void()>& act) {
+  auto* action = new QAction(text, this);
+  action->setObjectName(name);
+  action->setShortcut(keys);
+  action->setStatusTip(tip);
+  action->setToolTip(tip);
+  connect(action, &QAction::triggered, this, act);
+  menu->addAction(action);
+  return action;
+}
+
+QAction* MainWindow::add_in_view(QMenu* menu, const char* name, const QString& text,
+                                 const QKeySequence& keys, const QString& tip,
+                                 const std::function<void()>& act) {
+  QAction* action = add(menu, name, text, keys, tip, act);
+  action->setShortcutContext(Qt::WidgetShortcut);
+  viewport_->addAction(action);
+  return action;
+}
+
+void MainWindow::make_menus() {
+  make_file_menu();
+  make_edit_menu();
+  make_view_menu();
+  make_cage_menu();
+  make_pose_menu();
+  make_help_menu();
+}
+
+QString MainWindow::model_filter(bool all) const {
+  return all ? tr("Models and projects (*.obj *.ply *.stl *.off *.glb *.gltf *.cagewright);;"
+                  "All files (*)")
+             : tr("Models (*.obj *.ply *.stl *.off *.glb *.gltf);;All files (*)");
+}
+
+QString MainWindow::suggested(const QString& suffix, const QString& extension) const {
+  const Document& document = const_cast<MainWindow*>(this)->session_.document();
+  if (!document.has_model()) {
+    return "untitled" + suffix + extension;
+  }
+  const QFileInfo model(QString::fromStdString(document.model()->path.string()));
+  return model.path() + "/" + model.completeBaseName() + suffix +
+         (extension.isEmpty() ? "." + model.suffix() : extension);
+}
+
+void MainWindow::make_file_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&File"));
+  add(menu, "open", tr("&Open..."), QKeySequence::Open, tr("Opens a model or a project"),
+      [this] { choose_model(); });
+  QAction* load = add(menu, "load_cage", tr("&Load Cage..."), {"Ctrl+Shift+O"},
+                      tr("Takes a cage from a file"), [this] { choose_cage(); });
+  recent_ = menu->addMenu(tr("Open &Recent"));
+  connect(recent_, &QMenu::aboutToShow, this, &MainWindow::show_recent);
+  menu->addSeparator();
+  QAction* save_action = add(menu, "save", tr("&Save Project"), QKeySequence::Save,
+                             tr("Saves cage, poses, options and view"), [this] { save(); });
+  QAction* save_as_action = add(menu, "save_as", tr("Save Project &As..."), QKeySequence::SaveAs,
+                                tr("Saves the project under another name"), [this] { save_as(); });
+  menu->addSeparator();
+  const auto has_model = [this] {
+    return session_.document().has_model() && !session_.jobs().busy();
+  };
+  const auto has_cage = [this] { return session_.document().has_cage(); };
+  const auto deforming = [this] {
+    return session_.document().mode() == Mode::deform && !session_.jobs().busy();
+  };
+  QAction* model = add(menu, "export_model", tr("&Export Model..."), {"Ctrl+E"},
+                       tr("Writes the model as it is shown; a file of the same format keeps "
+                          "texture coordinates, groups and materials"),
+                       [this] { export_model(); });
+  QMenu* more = menu->addMenu(tr("E&xport More"));
+  QAction* poses = add(more, "export_poses", tr("All &Poses..."), {},
+                       tr("A file for each pose, named after it"), [this] {
+                         choose_export(tr("Export Poses"), suggested("-deformed", {}),
+                                       tr("Models (*.obj *.ply *.stl *.off)"),
+                                       [this](const auto& path) { session_.export_poses(path); });
+                       });
+  QAction* sequence =
+      add(more, "export_sequence", tr("&Sequence..."), {},
+          tr("A file for each frame of the time line"), [this] {
+            choose_export(tr("Export Sequence"), suggested("-sequence", {}),
+                          tr("Models (*.obj *.ply *.stl *.off)"), [this](const auto& path) {
+                            bool ok = true;
+                            const int step = QInputDialog::getInt(this, tr("Export Sequence"),
+                                                                  tr("Write every so many frames"),
+                                                                  1, 1, 1000, 1, &ok);
+                            if (ok) {
+                              session_.export_sequence(path, step);
+                            }
+                          });
+          });
+  QAction* cage =
+      add(more, "export_cage", tr("&Cage..."), {}, tr("The cage as it is shown"), [this] {
+        choose_export(tr("Save Cage"), suggested("-cage", ".obj"),
+                      tr("Meshes (*.obj *.ply *.stl *.off)"),
+                      [this](const auto& path) { session_.save_cage(path); });
+      });
+  QAction* weights =
+      add(more, "export_weights", tr("&Weights..."), {},
+          tr("How much each vertex of the model follows each of the cage, for NumPy"), [this] {
+            choose_export(tr("Export Weights"), suggested("-weights", ".npz"),
+                          tr("NumPy archives (*.npz)"),
+                          [this](const auto& path) { session_.export_weights(path); });
+          });
+  add(more, "export_image", tr("&Image of the View..."), {}, tr("A picture of what is shown"),
+      [this] { export_image(); });
+  menu->addSeparator();
+  add(menu, "preferences", tr("&Preferences..."), {"Ctrl+,"}, tr("Colors, autosave, hints"),
+      [this] {
+        PreferencesDialog dialog(preferences_, this);
+        if (dialog.exec() == QDialog::Accepted) {
+          apply(dialog.preferences());
+          preferences_.save();
+        }
+      });
+  add(menu, "quit", tr("&Quit"), QKeySequence::Quit, tr("Ends the program"), [this] { close(); });
+  needs_.push_back({load, has_model});
+  needs_.push_back({save_action, [this] { return session_.document().has_model(); }});
+  needs_.push_back({save_as_action, [this] { return session_.document().has_model(); }});
+  needs_.push_back({model, deforming});
+  needs_.push_back({poses, [this, deforming] {
+                      return deforming() && !session_.document().state().poses.empty();
+                    }});
+  needs_.push_back({sequence, [this, deforming] {
+                      return deforming() && !session_.document().state().time_line.keys.empty();
+                    }});
+  needs_.push_back({cage, has_cage});
+  needs_.push_back({weights, [has_model, has_cage] { return has_model() && has_cage(); }});
+}
+
+void MainWindow::make_edit_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Edit"));
+  QUndoStack& stack = session_.editor().undo_stack();
+  QAction* undo = stack.createUndoAction(this);
+  undo->setObjectName("undo");
+  undo->setShortcut(QKeySequence::Undo);
+  QAction* redo = stack.createRedoAction(this);
+  redo->setObjectName("redo");
+  redo->setShortcuts({QKeySequence(QKeySequence::Redo), QKeySequence("Ctrl+Y")});
+  menu->addAction(undo);
+  menu->addAction(redo);
+  make_select_menu(menu->addMenu(tr("&Select")));
+  menu->addSeparator();
+  menu->addActions(tools_->tools()->actions());
+  menu->addSeparator();
+  menu->addActions(tools_->switches());
+}
+
+void MainWindow::add_action(QMenu* menu, CageAction action, const QString& text,
+                            const QKeySequence& keys, const QString& tip) {
+  const QByteArray name = "cage_action_" + QByteArray::number(static_cast<int>(action));
+  QAction* made = add_in_view(menu, name.constData(), text, keys, tip,
+                              [this, action] { perform(action, session_.editor()); });
+  needs_.push_back({made, [this, action] {
+                      const Document& document = session_.document();
+                      return document.has_cage() &&
+                             (!changes_topology(action) || document.mode() == Mode::refine);
+                    }});
+}
+
+void MainWindow::make_select_menu(QMenu* menu) {
+  using enum CageAction;
+  add_action(menu, select_all, tr("&All"), {"A"}, tr("Selects everything of the cage"));
+  add_action(menu, select_none, tr("&None"), {"Alt+A"}, tr("Selects nothing"));
+  add_action(menu, invert, tr("&Invert"), {"Ctrl+I"}, tr("Selects what is not selected"));
+  add_action(menu, grow, tr("&Grow"), {"Ctrl++"}, tr("Adds the neighbors"));
+  add_action(menu, shrink, tr("&Shrink"), {"Ctrl+-"}, tr("Takes the rim away"));
+  add_action(menu, select_linked, tr("&Linked"), {"Ctrl+L"},
+             tr("Adds all that hangs together with the selection"));
+  add_action(menu, select_loop, tr("L&oop"), {}, tr("The edges that go straight on"));
+  add_action(menu, select_ring, tr("&Ring"), {}, tr("The edges opposite to each other"));
+  add_action(menu, mirror_selection, tr("&Mirror"), {}, tr("Adds the mirror images"));
+  menu->addSeparator();
+  add_action(menu, vertex_mode, tr("&Vertices"), {"1"}, tr("Vertices are selected from now on"));
+  add_action(menu, edge_mode, tr("&Edges"), {"2"}, tr("Edges are selected from now on"));
+  add_action(menu, face_mode, tr("&Faces"), {"3"}, tr("Faces are selected from now on"));
+}
+
+void MainWindow::make_view_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&View"));
+  add_in_view(menu, "frame_all", tr("Frame &All"), {"Home"}, tr("Brings everything into view"),
+              [this] { viewport_->frame_all(); });
+  add_in_view(menu, "frame_selection", tr("&Frame Selection"), {"F"},
+              tr("Brings the selection into view"), [this] { viewport_->frame_selection(); });
+  QAction* orthographic =
+      add_in_view(menu, "orthographic", tr("&Orthographic"), {"5"},
+                  tr("Without perspective: parallel lines stay parallel"),
+                  [this] { viewport_->set_orthographic(!viewport_->orthographic()); });
+  orthographic->setCheckable(true);
+  connect(viewport_, &Viewport::cameraChanged, orthographic,
+          [this, orthographic] { orthographic->setChecked(viewport_->orthographic()); });
+  QMenu* standard = menu->addMenu(tr("&Standard Views"));
+  const std::pair<QString, const char*> names[] = {{tr("Front"), "front"},
+                                                   {tr("Back"), "back"},
+                                                   {tr("Left"), "left"},
+                                                   {tr("Right"), "right"},
+                                                   {tr("Top"), "top"},
+                                                   {tr("Bottom"), "bottom"},
+                                                   {tr("Three-Quarter"), "three-quarter"}};
+  int number = 0;
+  for (const auto& [text, name] : names) {
+    add(standard, name, text, QKeySequence(QString("Alt+%1").arg(++number)), tr("Looks from there"),
+        [this, key = QString(name)] { viewport_->set_standard_view(key); });
+  }
+  menu->addSeparator();
+  panels_menu_ = menu->addMenu(tr("&Panels"));
+  for (QDockWidget* dock : findChildren<QDockWidget*>()) {
+    panels_menu_->addAction(dock->toggleViewAction());
+  }
+  panels_menu_->addAction(tools_->toggleViewAction());
+  panels_menu_->addSeparator();
+  add(panels_menu_, "reset_panels", tr("&Back to Their Places"), {},
+      tr("All panels as at the first start"), [this] { reset_panels(); });
+  QAction* dark = add(menu, "dark", tr("&Dark Colors"), {}, tr("Light on dark"), [] {});
+  dark->setCheckable(true);
+  connect(dark, &QAction::triggered, this, [this](bool on) {
+    Preferences preferences = preferences_;
+    preferences.theme = on ? "dark" : "light";
+    apply(preferences);
+    preferences_.save();
+  });
+  connect(menu, &QMenu::aboutToShow, dark,
+          [this, dark] { dark->setChecked(preferences_.theme == "dark"); });
+}
+
+void MainWindow::make_cage_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Cage"));
+  const auto free = [this] { return !session_.jobs().busy(); };
+  QAction* generate = add(menu, "generate_cage", tr("&Generate"), {"Ctrl+G"},
+                          tr("Makes a cage for the model"), [this] { session_.generate(); });
+  QAction* bind = add(menu, "bind_model", tr("&Bind"), {"Ctrl+B"}, tr("Ties the model to the cage"),
+                      [this] { session_.bind(); });
+  QAction* refine =
+      add(menu, "refine_cage", tr("&Refine"), {"Ctrl+Shift+B"},
+          tr("Unties the model, to edit the cage itself"), [this] { session_.refine(); });
+  QAction* cancel = add(menu, "cancel_job", tr("&Cancel"), {"Ctrl+."},
+                        tr("Stops what is under way"), [this] { session_.cancel(); });
+  menu->addSeparator();
+  using enum CageAction;
+  add_action(menu, split, tr("&Split Edges"), {}, tr("A new vertex in the middle of each edge"));
+  add_action(menu, split_ring, tr("Split &Ring"), {"Ctrl+R"},
+             tr("A loop of edges through the middle of a run of quads"));
+  add_action(menu, collapse, tr("C&ollapse"), {}, tr("Draws the selected edges together"));
+  add_action(menu, flip, tr("&Flip Edge"), {}, tr("The other diagonal of two triangles"));
+  add_action(menu, subdivide, tr("S&ubdivide"), {}, tr("Cuts each face in four"));
+  add_action(menu, CageAction::remove, tr("Dele&te"), {"Del"},
+             tr("Takes the selection away; the cage closes over it"));
+  add_action(menu, extrude, tr("E&xtrude Faces"), {"E"}, tr("Moves faces out, with new sides"));
+  menu->addSeparator();
+  add_in_view(menu, "less_depth", tr("One Cut &Less Deep"), {"["},
+              tr("Shows the boxes before the last cuts"), [this] { layers_->step_depth(-1); });
+  add_in_view(menu, "more_depth", tr("One Cut &Deeper"), {"]"},
+              tr("Shows the boxes after the next cuts"), [this] { layers_->step_depth(1); });
+  needs_.push_back({generate, [this, free] { return free() && session_.document().has_model(); }});
+  needs_.push_back({bind, [this, free] {
+                      const Document& d = session_.document();
+                      return free() && d.has_model() && d.has_cage() && d.mode() == Mode::refine;
+                    }});
+  needs_.push_back({refine, [this] { return session_.document().mode() == Mode::deform; }});
+  needs_.push_back({cancel, [this] { return session_.jobs().busy(); }});
+}
+
+void MainWindow::make_pose_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Pose"));
+  const auto deforming = [this] { return session_.document().mode() == Mode::deform; };
+  needs_.push_back({add(menu, "keep_pose", tr("&Keep"), {"Ctrl+K"},
+                        tr("Keeps the cage as it is as a pose"), [this] { poses_->add_pose(); }),
+                    deforming});
+  needs_.push_back(
+      {add(menu, "reset", tr("&Reset"), {"Ctrl+Shift+R"}, tr("The cage goes back to rest"),
+           [this] { session_.editor().reset_pose(); }),
+       deforming});
+  menu->addSeparator();
+  needs_.push_back({add_in_view(menu, "keyframe", tr("Set Key&frame"), {"K"},
+                                tr("The cage as it is becomes a keyframe"),
+                                [this] { time_line_->set_keyframe(); }),
+                    deforming});
+  needs_.push_back(
+      {add_in_view(menu, "play_pause", tr("&Play or Pause"), {"Space"}, tr("Plays the keyframes"),
+                   [this] { time_line_->toggle_playing(); }),
+       deforming});
+}
+
+void MainWindow::make_help_menu() {
+  QMenu* menu = menuBar()->addMenu(tr("&Help"));
+  add(menu, "first_steps", tr("&First Steps"), {"F1"}, tr("From a model to a deformed one"),
+      [this] { show_first_steps(); });
+  add(menu, "keys", tr("&Keys and Mouse"), {}, tr("What keys and mouse do in the view"),
+      [this] { show_keys(); });
+  add(menu, "about", tr("&About"), {}, tr("Which program this is"), [this] {
+    QMessageBox::about(this, tr("About Cagewright"),
+                       tr("<b>Cagewright %1</b><p>Builds a cage round a 3D model, proves that it "
+                          "is valid, and deforms the model by moving the cage.</p>"
+                          "<p>GPL-3.0-or-later</p>")
+                           .arg(QCoreApplication::applicationVersion()));
+  });
+}
+
+void MainWindow::show_first_steps() {
+  guide_->show();
+  QMessageBox::information(
+      this, tr("First Steps"),
+      tr("<ol><li><b>Open</b> a model (Ctrl+O), or drop a file onto the window.</li>"
+         "<li><b>Generate Cage</b> (Ctrl+G) makes a coarse shell round it. The figures at the "
+         "right say whether it is valid: it always is when it was generated.</li>"
+         "<li>Edit the cage if you like; faces that no longer fit turn red.</li>"
+         "<li><b>Bind</b> (Ctrl+B) ties the model to the cage.</li>"
+         "<li>Click a vertex of the cage, or several with Shift, and drag an arrow. The model "
+         "follows. Keep states as poses, or as keyframes on the time line.</li>"
+         "<li><b>Export Model</b> (Ctrl+E) writes the deformed model.</li></ol>"
+         "<p>Everything can be undone (Ctrl+Z). The bar above the view says what comes next.</p>"));
+}
+
+void MainWindow::show_keys() {
+  QMessageBox::information(
+      this, tr("Keys and Mouse"),
+      tr("<table cellpadding='2'>"
+         "<tr><td><b>Middle button</b></td><td>orbit; with Shift pan; the wheel zooms</td></tr>"
+         "<tr><td><b>Click</b></td><td>select; Shift adds; drag for a box</td></tr>"
+         "<tr><td><b>1 2 3</b></td><td>vertices, edges, faces</td></tr>"
+         "<tr><td><b>G R S</b></td><td>move, rotate, scale; then X Y Z for an axis, or a number; "
+         "Enter or click to end, Escape to cancel</td></tr>"
+         "<tr><td><b>F, Home</b></td><td>frame the selection, everything</td></tr>"
+         "<tr><td><b>[ ]</b></td><td>show the boxes less or more deeply cut</td></tr>"
+         "<tr><td><b>C</b></td><td>hold to compare with rest</td></tr>"
+         "<tr><td><b>K, Space</b></td><td>set a keyframe, play</td></tr></table>"));
+}
+
+// ---- Files
+
+void MainWindow::choose_model() {
+  const QString start = QSettings().value("last_folder").toString();
+  const QString path = QFileDialog::getOpenFileName(this, tr("Open a Model or a Project"), start,
+                                                    model_filter(true));
+  if (!path.isEmpty()) {
+    QSettings().setValue("last_folder", QFileInfo(path).path());
+    open(path);
+  }
+}
+
+void MainWindow::choose_cage() {
+  const QString start = QSettings().value("last_folder").toString();
+  const QString path =
+      QFileDialog::getOpenFileName(this, tr("Load a Cage"), start, model_filter(false));
+  if (!path.isEmpty()) {
+    session_.load_cage(path.toStdString());
+  }
+}
+
+void MainWindow::choose_export(const QString& title, const QString& name, const QString& filter,
+                               const std::function<void(const std::filesystem::path&)>& write) {
+  const QString path = QFileDialog::getSaveFileName(this, title, name, filter);
+  if (!path.isEmpty()) {
+    write(path.toStdString());
+  }
+}
+
+void MainWindow::export_model() {
+  choose_export(tr("Export Model"), suggested("-deformed", {}),
+                tr("Models (*.obj *.ply *.stl *.off)"),
+                [this](const auto& path) { session_.export_model(path); });
+}
+
+void MainWindow::export_image() {
+  choose_export(tr("Image of the View"), suggested("-view", ".png"), tr("Pictures (*.png *.jpg)"),
+                [this](const std::filesystem::path& path) {
+                  const QSize size = viewport_->size() * viewport_->devicePixelRatio();
+                  const QString name = QString::fromStdString(path.string());
+                  if (viewport_->picture(size).save(name)) {
+                    statusBar()->showMessage(tr("Wrote %1").arg(name), 15000);
+                  } else {
+                    show_error(tr("Image of the View"), tr("%1 cannot be written").arg(name));
+                  }
+                });
+}
+
+bool MainWindow::save() {
+  return session_.project_path().empty() ? save_as()
+                                         : session_.save_project(session_.project_path());
+}
+
+bool MainWindow::save_as() {
+  QString path =
+      QFileDialog::getSaveFileName(this, tr("Save Project"), suggested({}, ".cagewright"),
+                                   tr("Cagewright projects (*.cagewright)"));
+  if (path.isEmpty()) {
+    return false;
+  }
+  if (QFileInfo(path).suffix().isEmpty()) {
+    path += ".cagewright";
+  }
+  return session_.save_project(path.toStdString());
+}
+
+void MainWindow::show_recent() {
+  recent_->clear();
+  for (const QString& path : recent_files()) {
+    connect(recent_->addAction(path), &QAction::triggered, this, [this, path] { open(path); });
+  }
+  if (recent_->isEmpty()) {
+    recent_->addAction(tr("None yet"))->setEnabled(false);
+    return;
+  }
+  recent_->addSeparator();
+  connect(recent_->addAction(tr("Forget Them")), &QAction::triggered, this,
+          [] { clear_recent_files(); });
+}
+
+} // namespace cagewright::app

@@ -1,0 +1,171 @@
+#include "app/panels/figures_panel.h"
+
+#include <QFormLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QLocale>
+#include <QVBoxLayout>
+
+namespace cagewright::app {
+namespace {
+
+QString percent(double fraction, int decimals) {
+  return QLocale().toString(100 * fraction, 'f', decimals) + " %";
+}
+
+QString plural(const char* one, const char* many, std::size_t count) {
+  return count == 1 ? QObject::tr(one) : QObject::tr(many).arg(count);
+}
+
+} // namespace
+
+QString describe(ViolationKind kind, std::size_t count) {
+  switch (kind) {
+  case ViolationKind::no_faces:
+    return QObject::tr("The cage has no faces");
+  case ViolationKind::bad_corner:
+    return plural("A face has too few corners", "%1 faces have too few corners", count);
+  case ViolationKind::not_finite:
+    return plural("A vertex is not finite", "%1 vertices are not finite", count);
+  case ViolationKind::unused_vertex:
+    return plural("A vertex belongs to no face", "%1 vertices belong to no face", count);
+  case ViolationKind::coincident_vertices:
+    return plural("Two vertices are in the same place", "%1 pairs of vertices coincide", count);
+  case ViolationKind::degenerate_face:
+    return plural("A face has no area", "%1 faces have no area", count);
+  case ViolationKind::duplicate_face:
+    return plural("A face is there twice", "%1 faces are there twice", count);
+  case ViolationKind::open_edge:
+    return plural("The cage has an open edge", "The cage has %1 open edges", count);
+  case ViolationKind::nonmanifold_edge:
+    return plural("An edge has more than two faces", "%1 edges have more than two faces", count);
+  case ViolationKind::flipped_edge:
+    return plural("Two neighboring faces look opposite ways",
+                  "%1 pairs of neighboring faces look opposite ways", count);
+  case ViolationKind::nonmanifold_vertex:
+    return plural("Faces touch in a vertex only", "Faces touch in %1 vertices only", count);
+  case ViolationKind::self_intersection:
+    return plural("Two faces of the cage cross", "%1 pairs of faces of the cage cross", count);
+  case ViolationKind::inverted_piece:
+    return plural("The cage is inside out", "%1 pieces are inside out", count);
+  case ViolationKind::several_pieces:
+    return plural("There is a second piece", "There are %1 more pieces", count);
+  case ViolationKind::nested_piece:
+    return plural("A piece lies within another", "%1 pieces lie within others", count);
+  case ViolationKind::vertex_outside:
+    return plural("A vertex of the model is outside", "%1 vertices of the model are outside",
+                  count);
+  case ViolationKind::vertex_on_cage:
+    return plural("A vertex of the model lies on the cage",
+                  "%1 vertices of the model lie on the cage", count);
+  case ViolationKind::face_contact:
+    return plural("A face of the model touches the cage", "%1 faces of the model touch the cage",
+                  count);
+  }
+  return {};
+}
+
+FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
+    : QWidget(parent), document_(document) {
+  auto* layout = new QVBoxLayout(this);
+  verdict_ = new QLabel;
+  verdict_->setObjectName("verdict");
+  verdict_->setWordWrap(true);
+  layout->addWidget(verdict_);
+  auto* form = new QFormLayout;
+  form->setVerticalSpacing(2);
+  layout->addLayout(form);
+  const auto add = [&](const char* key, const QString& label, const QString& help) {
+    auto* value = new QLabel("-");
+    value->setObjectName(key);
+    value->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    value->setToolTip(help);
+    form->addRow(label, value);
+    form->labelForField(value)->setToolTip(help);
+    values_[key] = value;
+  };
+  add("vertices", tr("Vertices"), tr("Of the cage"));
+  add("faces", tr("Faces"), tr("Of the cage: polygons, and triangles when they are cut"));
+  add("volume_ratio", tr("Volume ratio"), tr("Volume of the cage divided by that of the model"));
+  add("gap", tr("Least gap"), tr("Least distance between cage and model, of the diagonal"));
+  add("mean_gap", tr("Mean gap"), tr("Mean distance from the cage to the model, of the diagonal"));
+  add("quality", tr("Face quality"),
+      tr("Of the worst face: 1 for an equilateral triangle, 0 for one without area"));
+  add("model", tr("Model"), tr("Vertices and triangles of the model"));
+  problems_ = new QListWidget;
+  problems_->setObjectName("problems");
+  problems_->setToolTip(tr("What the check found. It is drawn where it is; the layer Problems "
+                           "shows and hides it."));
+  problems_->setSelectionMode(QAbstractItemView::NoSelection);
+  problems_->setWordWrap(true);
+  problems_->setMinimumHeight(40);
+  layout->addWidget(problems_, 1);
+  layout->addStretch();
+  connect(&document, &Document::cageChanged, this, &FiguresPanel::update_figures);
+  connect(&document, &Document::metricsChanged, this, &FiguresPanel::update_figures);
+  connect(&document, &Document::modelChanged, this, &FiguresPanel::update_figures);
+  connect(&document, &Document::cageChanged, this, &FiguresPanel::update_check);
+  connect(&document, &Document::checkChanged, this, &FiguresPanel::update_check);
+  update_figures();
+  update_check();
+}
+
+void FiguresPanel::update_figures() {
+  const QLocale locale;
+  const auto set = [&](const char* key, const QString& text) { values_[key]->setText(text); };
+  const auto count = [&](std::size_t n) { return locale.toString(static_cast<qulonglong>(n)); };
+  for (auto& [key, label] : values_) {
+    label->setText("-");
+  }
+  if (document_.has_model()) {
+    set("model", tr("%1 vertices, %2 triangles")
+                     .arg(count(document_.model()->mesh.positions.size()),
+                          count(document_.model()->triangles.size())));
+  }
+  if (!document_.has_cage()) {
+    return;
+  }
+  const PolygonMesh& cage = document_.cage_rest();
+  const std::size_t triangles = cage.corners().size() - 2 * cage.face_count();
+  set("vertices", count(cage.positions.size()));
+  set("faces", triangles == cage.face_count()
+                   ? count(triangles)
+                   : tr("%1 (%2 triangles)").arg(count(cage.face_count()), count(triangles)));
+  if (const auto& metrics = document_.metrics()) {
+    set("volume_ratio",
+        metrics->volume_ratio > 0 ? locale.toString(metrics->volume_ratio, 'f', 3) : "-");
+    set("gap", percent(metrics->clearance, 3));
+    set("mean_gap", percent(metrics->mean_distance, 2));
+    set("quality", locale.toString(metrics->min_quality, 'f', 3));
+  }
+}
+
+void FiguresPanel::update_check() {
+  problems_->clear();
+  const CageCheck& check = document_.check();
+  const auto say = [&](const QString& text, const char* color) {
+    verdict_->setText(QString("<span style='color:%1; font-size:14pt'>&#9679;</span> <b>%2</b>")
+                          .arg(color, text));
+  };
+  if (!document_.has_cage()) {
+    say(tr("No cage yet"), "gray");
+  } else if (!document_.offending_faces().empty() && check.state != CageCheck::State::done) {
+    say(tr("Not valid here"), "#d62a2a");
+  } else if (check.state == CageCheck::State::checking) {
+    say(tr("Checking..."), "#d69b00");
+  } else if (!check.report) {
+    say(tr("Not checked"), "gray");
+  } else if (check.report->valid()) {
+    say(tr("Valid"), "#1f9d3a");
+  } else {
+    say(tr("Not valid"), "#d62a2a");
+    for (std::size_t k = 0; k < violation_kinds; ++k) {
+      if (check.report->counts[k] > 0) {
+        problems_->addItem(describe(static_cast<ViolationKind>(k), check.report->counts[k]));
+      }
+    }
+  }
+  problems_->setVisible(problems_->count() > 0);
+}
+
+} // namespace cagewright::app

@@ -1,0 +1,222 @@
+#include "app/panels/generate_panel.h"
+
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+namespace cagewright::app {
+namespace {
+
+/// The wheel scrolls the panel, not the values on its way.
+class IgnoreWheel final : public QObject {
+public:
+  using QObject::QObject;
+  bool eventFilter(QObject* watched, QEvent* event) override {
+    auto* widget = qobject_cast<QWidget*>(watched);
+    if (event->type() == QEvent::Wheel && widget != nullptr && !widget->hasFocus()) {
+      event->ignore();
+      return true;
+    }
+    return QObject::eventFilter(watched, event);
+  }
+};
+
+QLabel* explanation(const QString& text) {
+  auto* label = new QLabel(text);
+  label->setWordWrap(true);
+  label->setForegroundRole(QPalette::PlaceholderText);
+  QFont font = label->font();
+  font.setPointSizeF(font.pointSizeF() * 0.88);
+  label->setFont(font);
+  return label;
+}
+
+QString big_button_style() {
+  return "QPushButton { padding: 8px; font-weight: bold; }";
+}
+
+} // namespace
+
+GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
+    : QWidget(parent), session_(session) {
+  auto* layout = new QVBoxLayout(this);
+
+  auto* content = new QWidget;
+  auto* options = new QVBoxLayout(content);
+  options->setContentsMargins(0, 0, 6, 0);
+  auto* basic = new QFormLayout;
+  options->addLayout(basic);
+
+  auto* toggle = new QToolButton;
+  toggle->setObjectName("advanced");
+  toggle->setText(tr("Advanced"));
+  toggle->setCheckable(true);
+  toggle->setArrowType(Qt::RightArrow);
+  toggle->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  toggle->setAutoRaise(true);
+  options->addWidget(toggle);
+  auto* advanced = new QWidget;
+  auto* advanced_layout = new QVBoxLayout(advanced);
+  advanced_layout->setContentsMargins(0, 0, 0, 0);
+  advanced->hide();
+  options->addWidget(advanced);
+  options->addStretch();
+  connect(toggle, &QToolButton::toggled, this, [advanced, toggle](bool on) {
+    advanced->setVisible(on);
+    toggle->setArrowType(on ? Qt::DownArrow : Qt::RightArrow);
+  });
+
+  auto* budget = new QFormLayout;
+  auto* boxes = new QFormLayout;
+  advanced_layout->addWidget(new QLabel("<b>" + tr("Budget and envelope") + "</b>"));
+  advanced_layout->addLayout(budget);
+  advanced_layout->addWidget(new QLabel("<b>" + tr("Boxes") + "</b>"));
+  advanced_layout->addLayout(boxes);
+  for (QFormLayout* form : {basic, budget, boxes}) {
+    form->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  }
+  for (const GenerateOption& option : generate_options()) {
+    add_option(option, option.group == GenerateOption::Group::basic    ? basic
+                       : option.group == GenerateOption::Group::budget ? budget
+                                                                       : boxes);
+  }
+  auto* defaults = new QPushButton(tr("Defaults"));
+  defaults->setToolTip(tr("Puts all options back"));
+  connect(defaults, &QPushButton::clicked, this, [this] { session_.set_settings({}); });
+  advanced_layout->addWidget(defaults);
+
+  auto* scroll = new QScrollArea;
+  scroll->setWidget(content);
+  scroll->setWidgetResizable(true);
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  layout->addWidget(scroll, 1);
+
+  generate_ = new QPushButton(tr("Generate Cage"));
+  generate_->setObjectName("generate");
+  generate_->setStyleSheet(big_button_style());
+  generate_->setToolTip(tr("Makes a cage with these options (Ctrl+G). The cage there is stays "
+                           "until the new one is ready."));
+  connect(generate_, &QPushButton::clicked, &session_, &Session::generate);
+  layout->addWidget(generate_);
+
+  load_ = new QPushButton(tr("Load a Cage Instead..."));
+  load_->setToolTip(tr("A cage made elsewhere, from a file"));
+  connect(load_, &QPushButton::clicked, this, &GeneratePanel::loadCageRequested);
+  layout->addWidget(load_);
+
+  bind_ = new QPushButton(tr("Bind"));
+  bind_->setObjectName("bind");
+  bind_->setStyleSheet(big_button_style());
+  bind_->setToolTip(tr("Ties the model to the cage (Ctrl+B): from then on, dragging the cage "
+                       "deforms the model"));
+  connect(bind_, &QPushButton::clicked, &session_, &Session::bind);
+  layout->addWidget(bind_);
+
+  refine_ = new QPushButton(tr("Back to Refining the Cage"));
+  refine_->setObjectName("refine");
+  refine_->setToolTip(tr("Unties the model, so that the cage itself can be edited"));
+  connect(refine_, &QPushButton::clicked, &session_, &Session::refine);
+  layout->addWidget(refine_);
+
+  connect(&session_, &Session::settingsChanged, this, &GeneratePanel::update_options);
+  connect(&session_.document(), &Document::modelChanged, this, &GeneratePanel::update_buttons);
+  connect(&session_.document(), &Document::cageChanged, this, &GeneratePanel::update_buttons);
+  connect(&session_.document(), &Document::modeChanged, this, &GeneratePanel::update_buttons);
+  connect(&session_.jobs(), &JobRunner::started, this, &GeneratePanel::update_buttons);
+  connect(&session_.jobs(), &JobRunner::finished, this, &GeneratePanel::update_buttons);
+  update_options();
+  update_buttons();
+}
+
+template <class Set> void GeneratePanel::change(const Set& set) {
+  GenerateSettings settings = session_.settings();
+  set(settings);
+  session_.set_settings(settings);
+}
+
+void GeneratePanel::add_option(const GenerateOption& option, QFormLayout* form) {
+  auto* field = new QWidget;
+  auto* layout = new QVBoxLayout(field);
+  layout->setContentsMargins(0, 0, 0, 4);
+  layout->setSpacing(1);
+  QWidget* editor = nullptr;
+  std::function<void()> show_value;
+
+  if (const auto* integer = std::get_if<GenerateOption::Integer>(&option.kind)) {
+    auto* box = new QSpinBox;
+    box->setRange(integer->least, integer->most);
+    box->setSpecialValueText(integer->at_least);
+    connect(box, &QSpinBox::valueChanged, this, [this, integer](int value) {
+      change([&](GenerateSettings& s) { integer->value(s) = value; });
+    });
+    show_value = [this, box, integer] {
+      GenerateSettings settings = session_.settings();
+      const QSignalBlocker blocker(box);
+      box->setValue(integer->value(settings));
+    };
+    editor = box;
+  } else if (const auto* number = std::get_if<GenerateOption::Number>(&option.kind)) {
+    auto* box = new QDoubleSpinBox;
+    box->setRange(number->least, number->most);
+    box->setDecimals(number->decimals);
+    box->setSingleStep(number->step);
+    connect(box, &QDoubleSpinBox::valueChanged, this, [this, number](double value) {
+      change([&](GenerateSettings& s) { number->value(s) = value; });
+    });
+    show_value = [this, box, number] {
+      GenerateSettings settings = session_.settings();
+      const QSignalBlocker blocker(box);
+      box->setValue(number->value(settings));
+    };
+    editor = box;
+  } else {
+    const auto* choice = &std::get<GenerateOption::Choice>(option.kind);
+    auto* box = new QComboBox;
+    box->addItems(choice->labels);
+    connect(box, &QComboBox::currentIndexChanged, this,
+            [this, choice](int at) { change([&](GenerateSettings& s) { choice->set(s, at); }); });
+    show_value = [this, box, choice] {
+      const QSignalBlocker blocker(box);
+      box->setCurrentIndex(choice->get(session_.settings()));
+    };
+    editor = box;
+  }
+  editor->setObjectName(option.key);
+  editor->setToolTip(option.help);
+  editor->setAccessibleName(option.label);
+  editor->setFocusPolicy(Qt::StrongFocus);
+  editor->installEventFilter(new IgnoreWheel(editor));
+  layout->addWidget(editor);
+  layout->addWidget(explanation(option.help));
+  form->addRow(option.label, field);
+  rows_.push_back({&option, form, field, std::move(show_value)});
+}
+
+void GeneratePanel::update_options() {
+  const CageMethod method = session_.settings().method;
+  for (const Row& row : rows_) {
+    row.show_value();
+    row.form->setRowVisible(row.field, row.option->applies(method));
+  }
+}
+
+void GeneratePanel::update_buttons() {
+  const Document& document = session_.document();
+  const bool free = !session_.jobs().busy();
+  const bool deforming = document.mode() == Mode::deform;
+  generate_->setEnabled(free && document.has_model());
+  load_->setEnabled(free && document.has_model());
+  bind_->setEnabled(free && document.has_model() && document.has_cage());
+  bind_->setVisible(!deforming);
+  refine_->setVisible(deforming);
+}
+
+} // namespace cagewright::app

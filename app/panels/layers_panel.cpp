@@ -1,0 +1,163 @@
+#include "app/panels/layers_panel.h"
+
+#include <QCheckBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QSignalBlocker>
+#include <QSlider>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace cagewright::app {
+namespace {
+
+struct Entry {
+  const char* name;
+  const char* label;
+  const char* help;
+  bool Layers::*value;
+  bool needs_stages = false;
+};
+
+struct Group {
+  const char* title;
+  std::vector<Entry> entries;
+};
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> all = {
+      {"Model",
+       {{"model", "Surface", "The model, shaded", &Layers::model},
+        {"smooth_normals", "Smooth", "Smooth shading; otherwise each face is flat",
+         &Layers::smooth_normals},
+        {"wireframe", "Wireframe", "The edges of the model", &Layers::wireframe},
+        {"weights", "Weights of the selection",
+         "Colors: how much each point of the model follows the selected cage vertices. Needs a "
+         "bound model",
+         &Layers::weights}}},
+      {"Cage",
+       {{"cage_edges", "Edges", "The edges of the cage", &Layers::cage_edges},
+        {"cage_faces", "Faces", "The faces of the cage, translucent", &Layers::cage_faces},
+        {"cage_vertices", "Vertices", "The vertices of the cage", &Layers::cage_vertices},
+        {"rest_cage", "At rest", "While deforming: also the cage at rest", &Layers::rest_cage},
+        {"distance", "Distance to the model", "Colors: how far the cage is from the model",
+         &Layers::distance},
+        {"problems", "Problems", "What the check found, where it is", &Layers::problems}}},
+      {"How it was split",
+       {{"boxes", "Boxes", "The oriented boxes at the depth below", &Layers::boxes, true},
+        {"cuts", "Cuts", "The planes in which the boxes were cut", &Layers::cuts, true},
+        {"feature_voxels", "Voxels on the surface", "Voxels that the surface runs through",
+         &Layers::feature_voxels, true},
+        {"inner_voxels", "Voxels inside", "Voxels wholly inside", &Layers::inner_voxels, true}}},
+      {"Around", {{"grid", "Ground", "A grid on the ground", &Layers::grid}}}};
+  return all;
+}
+
+bool needs_stages(const Layers& layers) {
+  return layers.boxes || layers.cuts || layers.feature_voxels || layers.inner_voxels;
+}
+
+} // namespace
+
+LayersPanel::LayersPanel(Session& session, QWidget* parent) : QWidget(parent), session_(session) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setSpacing(2);
+  for (const Group& group : groups()) {
+    layout->addWidget(new QLabel("<b>" + tr(group.title) + "</b>"));
+    for (const Entry& entry : group.entries) {
+      auto* box = new QCheckBox(tr(entry.label));
+      box->setObjectName(entry.name);
+      box->setToolTip(tr(entry.help));
+      connect(box, &QCheckBox::toggled, this, [this, value = entry.value](bool on) {
+        Layers layers = session_.document().layers();
+        layers.*value = on;
+        session_.document().set_layers(layers);
+        ensure_stages();
+      });
+      layout->addWidget(box);
+      switches_.push_back({box, entry.value});
+    }
+    if (std::string_view(group.title) == "How it was split") {
+      auto* row = new QHBoxLayout;
+      auto* less = new QToolButton;
+      less->setText("-");
+      less->setToolTip(tr("One cut less deep ([)"));
+      auto* more = new QToolButton;
+      more->setText("+");
+      more->setToolTip(tr("One cut deeper (])"));
+      depth_ = new QSlider(Qt::Horizontal);
+      depth_->setObjectName("shown_depth");
+      depth_->setPageStep(1);
+      depth_->setToolTip(tr("How many cuts deep the boxes are shown: step through them to watch "
+                            "the splitting"));
+      depth_text_ = new QLabel;
+      row->addWidget(less);
+      row->addWidget(depth_, 1);
+      row->addWidget(more);
+      layout->addLayout(row);
+      layout->addWidget(depth_text_);
+      connect(less, &QToolButton::clicked, this, [this] { step_depth(-1); });
+      connect(more, &QToolButton::clicked, this, [this] { step_depth(1); });
+      connect(depth_, &QSlider::valueChanged, this, [this](int value) {
+        Layers layers = session_.document().layers();
+        layers.depth = value;
+        layers.boxes = layers.boxes || !needs_stages(layers);
+        session_.document().set_layers(layers);
+        ensure_stages();
+      });
+    }
+    layout->addSpacing(6);
+  }
+  layout->addStretch();
+  connect(&session.document(), &Document::layersChanged, this, &LayersPanel::update_switches);
+  connect(&session.document(), &Document::stagesChanged, this, &LayersPanel::update_depth);
+  update_switches();
+  update_depth();
+}
+
+void LayersPanel::step_depth(int by) {
+  Layers layers = session_.document().layers();
+  const int deepest = session_.document().stage_depth();
+  const int now = layers.depth < 0 ? deepest : layers.depth;
+  layers.depth = std::clamp(now + by, 0, std::max(deepest, 0));
+  layers.boxes = true;
+  session_.document().set_layers(layers);
+  ensure_stages();
+}
+
+void LayersPanel::ensure_stages() {
+  const Document& document = session_.document();
+  if (needs_stages(document.layers()) && !document.stages() && document.has_model() &&
+      !session_.jobs().busy()) {
+    session_.make_stages();
+  }
+}
+
+void LayersPanel::update_switches() {
+  const Layers& layers = session_.document().layers();
+  for (const Switch& s : switches_) {
+    const QSignalBlocker blocker(s.box);
+    s.box->setChecked(layers.*s.value);
+  }
+  update_depth();
+}
+
+void LayersPanel::update_depth() {
+  const Document& document = session_.document();
+  const QSignalBlocker blocker(depth_);
+  const int deepest = document.stage_depth();
+  const int depth = document.layers().depth < 0 ? deepest : document.layers().depth;
+  depth_->setRange(0, deepest);
+  depth_->setValue(depth);
+  depth_->setEnabled(document.stages() != nullptr);
+  if (document.stages()) {
+    const auto boxes = document.stages()->tree.cover(depth).size();
+    depth_text_->setText(tr("Depth %1 of %2: %L3 boxes").arg(depth).arg(deepest).arg(boxes));
+  } else {
+    depth_text_->setText(tr("Not split yet"));
+  }
+}
+
+} // namespace cagewright::app

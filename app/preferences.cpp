@@ -1,0 +1,93 @@
+#include "app/preferences.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QFileInfo>
+#include <QFormLayout>
+#include <QSettings>
+#include <QSpinBox>
+
+#include <algorithm>
+
+namespace cagewright::app {
+namespace {
+
+constexpr int most_recent = 10;
+
+} // namespace
+
+Preferences Preferences::load() {
+  const QSettings settings;
+  Preferences p;
+  p.theme = settings.value("theme", p.theme).toString();
+  p.autosave_seconds =
+      std::clamp(settings.value("autosave_seconds", p.autosave_seconds).toInt(), 0, 3600);
+  p.ask_before_closing = settings.value("ask_before_closing", p.ask_before_closing).toBool();
+  p.hints = settings.value("hints", p.hints).toBool();
+  return p;
+}
+
+void Preferences::save() const {
+  QSettings settings;
+  settings.setValue("theme", theme);
+  settings.setValue("autosave_seconds", autosave_seconds);
+  settings.setValue("ask_before_closing", ask_before_closing);
+  settings.setValue("hints", hints);
+}
+
+QStringList recent_files() {
+  QStringList files = QSettings().value("recent_files").toStringList();
+  files.removeIf([](const QString& file) { return !QFileInfo::exists(file); });
+  return files;
+}
+
+void add_recent_file(const QString& path) {
+  const QString absolute = QFileInfo(path).absoluteFilePath();
+  QStringList files = recent_files();
+  files.removeAll(absolute);
+  files.prepend(absolute);
+  QSettings().setValue("recent_files", files.mid(0, most_recent));
+}
+
+void clear_recent_files() {
+  QSettings().remove("recent_files");
+}
+
+PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* parent)
+    : QDialog(parent), preferences_(preferences) {
+  setWindowTitle(tr("Preferences"));
+  auto* form = new QFormLayout(this);
+  auto* theme = new QComboBox;
+  theme->setObjectName("theme");
+  theme->addItem(tr("Light"), "light");
+  theme->addItem(tr("Dark"), "dark");
+  theme->setCurrentIndex(theme->findData(preferences_.theme));
+  form->addRow(tr("Colors"), theme);
+  auto* autosave = new QSpinBox;
+  autosave->setRange(0, 3600);
+  autosave->setSuffix(tr(" s"));
+  autosave->setSpecialValueText(tr("never"));
+  autosave->setValue(preferences_.autosave_seconds);
+  autosave->setToolTip(tr("How often work is kept aside, to be recovered after a crash"));
+  form->addRow(tr("Keep work aside every"), autosave);
+  auto* ask = new QCheckBox(tr("Ask about unsaved work before closing"));
+  ask->setChecked(preferences_.ask_before_closing);
+  form->addRow(ask);
+  auto* hints = new QCheckBox(tr("Show what to do next"));
+  hints->setChecked(preferences_.hints);
+  form->addRow(hints);
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
+  form->addRow(buttons);
+  connect(theme, &QComboBox::currentIndexChanged, this,
+          [this, theme] { preferences_.theme = theme->currentData().toString(); });
+  connect(autosave, &QSpinBox::valueChanged, this,
+          [this](int value) { preferences_.autosave_seconds = value; });
+  connect(ask, &QCheckBox::toggled, this,
+          [this](bool on) { preferences_.ask_before_closing = on; });
+  connect(hints, &QCheckBox::toggled, this, [this](bool on) { preferences_.hints = on; });
+  connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+}
+
+} // namespace cagewright::app

@@ -1,0 +1,74 @@
+#include "app/recovery.h"
+
+#include <QFile>
+#include <QFileInfo>
+#include <QUuid>
+
+namespace cagewright::app {
+namespace {
+
+QString lock_of(const QString& path) {
+  return path + ".lock";
+}
+
+} // namespace
+
+Recovery::Recovery(Session& session, const QDir& folder, QObject* parent)
+    : QObject(parent), session_(session), folder_(folder) {
+  folder_.mkpath(".");
+  path_ = folder_.filePath(QUuid::createUuid().toString(QUuid::WithoutBraces) + ".cagewright");
+  lock_ = std::make_unique<QLockFile>(lock_of(path_));
+  lock_->setStaleLockTime(0);
+  lock_->tryLock(0);
+  connect(&timer_, &QTimer::timeout, this, &Recovery::save);
+  connect(&session, &Session::titleChanged, this, [this] {
+    if (!session_.modified()) {
+      QFile::remove(path_);
+    }
+  });
+}
+
+Recovery::~Recovery() {
+  QFile::remove(path_);
+}
+
+void Recovery::set_interval(int seconds) {
+  if (seconds > 0) {
+    timer_.start(seconds * 1000);
+  } else {
+    timer_.stop();
+  }
+}
+
+void Recovery::save() {
+  const int step = session_.editor().undo_stack().index();
+  if (!session_.modified() || session_.editor().moving() ||
+      (step == saved_step_ && QFile::exists(path_))) {
+    return;
+  }
+  if (session_.autosave(path_.toStdString())) {
+    saved_step_ = step;
+  }
+}
+
+std::vector<QString> Recovery::abandoned() const {
+  std::vector<QString> found;
+  for (const QFileInfo& file : folder_.entryInfoList({"*.cagewright"}, QDir::Files, QDir::Time)) {
+    if (file.filePath() == path_) {
+      continue;
+    }
+    QLockFile lock(lock_of(file.filePath()));
+    lock.setStaleLockTime(0);
+    if (lock.tryLock(0)) {
+      found.push_back(file.filePath());
+    }
+  }
+  return found;
+}
+
+void Recovery::discard(const QString& path) {
+  QFile::remove(path);
+  QFile::remove(lock_of(path));
+}
+
+} // namespace cagewright::app

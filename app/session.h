@@ -1,0 +1,119 @@
+/// \file
+/// What the menus and buttons do, without any widget.
+#pragma once
+
+#include "app/commands/editor.h"
+#include "app/document/document.h"
+#include "app/document/generate_settings.h"
+#include "app/document/project_file.h"
+#include "app/jobs/checker.h"
+#include "app/jobs/deform_loop.h"
+#include "app/jobs/job_runner.h"
+
+#include <QObject>
+#include <QString>
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace cagewright::app {
+
+/// One document and all that works on it. What takes time runs as a job and leaves the window
+/// usable; a failure becomes a sentence for failed(), never more.
+class Session final : public QObject {
+  Q_OBJECT
+
+public:
+  explicit Session(QObject* parent = nullptr);
+  ~Session() override;
+
+  [[nodiscard]] Document& document() { return document_; }
+  [[nodiscard]] Editor& editor() { return editor_; }
+  [[nodiscard]] JobRunner& jobs() { return jobs_; }
+  [[nodiscard]] Checker& checker() { return checker_; }
+  [[nodiscard]] DeformLoop& deform_loop() { return deform_loop_; }
+
+  [[nodiscard]] const GenerateSettings& settings() const { return settings_; }
+  void set_settings(const GenerateSettings& settings);
+
+  // ---- Opening. Each replaces what is open; asking whether to keep that is up to the window.
+
+  /// A project, or a model and perhaps a cage for it.
+  void open(const std::filesystem::path& path, const std::filesystem::path& cage = {});
+  /// A cage for the model that is open.
+  void load_cage(const std::filesystem::path& path);
+  /// Another place for the project's model that was not found.
+  void open_project_with_model(const std::filesystem::path& project,
+                               const std::filesystem::path& model);
+
+  // ---- Working
+
+  void generate();
+  /// Splits the model into boxes, to look at.
+  void make_stages();
+  void bind();
+  void refine();
+  void cancel() { jobs_.cancel(); }
+
+  // ---- Keeping
+
+  /// Of the project; empty: not saved yet.
+  [[nodiscard]] const std::filesystem::path& project_path() const { return project_path_; }
+  [[nodiscard]] bool modified() const;
+  /// The title of what is open: the project's or the model's name, or empty.
+  [[nodiscard]] QString title() const;
+  bool save_project(const std::filesystem::path& path);
+  /// The same as a file from which a later run can go on after a crash; does not count as saved.
+  Status autosave(const std::filesystem::path& path);
+  /// Goes on from an autosaved project; it counts as modified.
+  void recover(const std::filesystem::path& path);
+  /// Where the camera comes from when a project is saved.
+  void set_camera_source(std::function<QJsonObject()> source) { camera_ = std::move(source); }
+
+  bool save_cage(const std::filesystem::path& path);
+  void export_model(const std::filesystem::path& path);
+  /// A file for each pose: PATH's name with "-NAME" after its stem.
+  void export_poses(const std::filesystem::path& path);
+  /// A file for each frame of the time line, every `step` frames: "-0001" and so on.
+  void export_sequence(const std::filesystem::path& path, int step);
+  void export_weights(const std::filesystem::path& path);
+
+Q_SIGNALS:
+  void message(const QString& text); ///< for the status bar
+  void failed(const QString& title, const QString& text);
+  void opened(const QString& path); ///< for the list of recent files
+  void titleChanged();              ///< title() or modified()
+  void settingsChanged();
+  void cameraRestored(const QJsonObject& camera);
+  /// The model of a project is not where it was, or is another one.
+  void modelMissing(const QString& project, const QString& model);
+
+private:
+  [[nodiscard]] Project project() const;
+  void open_project(const std::filesystem::path& path, const std::filesystem::path& model,
+                    bool recovered);
+  void restore(const Project& project, std::shared_ptr<const Model> model,
+               std::shared_ptr<const Binding> binding);
+  void start_export(const QString& title, std::vector<std::filesystem::path> paths,
+                    std::vector<SharedPositions> poses);
+  bool start(const QString& title, Job::Work work);
+  bool report(const QString& title, const Status& status);
+
+  Document document_;
+  Editor editor_;
+  JobRunner jobs_;
+  DeformLoop deform_loop_;
+  Checker checker_;
+  GenerateSettings settings_;
+  std::filesystem::path project_path_;
+  bool modified_ = false; // what the undo stack does not know: recovered work
+  std::function<QJsonObject()> camera_;
+};
+
+/// PATH with something between stem and extension: "a/b.obj", "-01" gives "a/b-01.obj". What files
+/// cannot be named is replaced.
+std::filesystem::path with_suffix(const std::filesystem::path& path, const QString& suffix);
+
+} // namespace cagewright::app

@@ -1,0 +1,379 @@
+#include "app/session.h"
+
+#include "app/document/binding.h"
+#include "app/recovery.h"
+#include "deform/weights_file.h"
+#include "io/read_mesh.h"
+#include "io/write_mesh.h"
+#include "mesh/shapes.h"
+#include "waiting.h"
+
+#include <QFile>
+#include <QTemporaryDir>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace cagewright::app {
+namespace {
+
+namespace fs = std::filesystem;
+using test::wait_until;
+
+/// A session with a torus to open and a cage for it, both as files.
+class SessionTest : public testing::Test {
+protected:
+  void SetUp() override {
+    ASSERT_TRUE(write_mesh(PolygonMesh(make_torus(0.25, 40, 20)), path("model.obj")));
+    ASSERT_TRUE(write_mesh(PolygonMesh(make_torus(0.4, 12, 7)), path("cage.obj")));
+    QObject::connect(&session_, &Session::failed, [this](const QString&, const QString& text) {
+      failures_.push_back(text.toStdString());
+    });
+    QObject::connect(&session_, &Session::message,
+                     [this](const QString& text) { message_ = text.toStdString(); });
+  }
+
+  fs::path path(const std::string& name) { return fs::path(folder_.path().toStdString()) / name; }
+  void wait() {
+    ASSERT_TRUE(wait_until([this] { return !session_.jobs().busy(); }));
+  }
+  void open_and_bind() {
+    session_.open(path("model.obj"), path("cage.obj"));
+    wait();
+    ASSERT_TRUE(session_.document().has_cage());
+    session_.bind();
+    wait();
+    ASSERT_EQ(session_.document().mode(), Mode::deform);
+  }
+  void drag(Index vertex, const Vec3& by) {
+    session_.editor().move({vertex}, std::vector<Vec3>{cage()[vertex] + by}, "Move");
+  }
+  std::vector<Vec3> cage() {
+    const auto positions = session_.document().cage_positions();
+    return {positions.begin(), positions.end()};
+  }
+  std::vector<Vec3> shown_model() {
+    session_.deform_loop().finish();
+    const auto positions = session_.document().model_positions();
+    return {positions.begin(), positions.end()};
+  }
+
+  QTemporaryDir folder_;
+  std::vector<std::string> failures_;
+  std::string message_;
+  Session session_;
+};
+
+double greatest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
+  double greatest = a.size() == b.size() ? 0 : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    greatest = std::max(greatest, (a[i] - b[i]).norm());
+  }
+  return greatest;
+}
+
+TEST_F(SessionTest, MakesACageThatTheCheckCallsValid) {
+  session_.open(path("model.obj"));
+  wait();
+  GenerateSettings settings;
+  settings.options.improve.vertices = 40;
+  session_.set_settings(settings);
+  session_.generate();
+  EXPECT_FALSE(session_.document().has_cage()) << "the cage comes when it is ready";
+  wait();
+  ASSERT_TRUE(session_.document().has_cage());
+  EXPECT_LE(session_.document().cage_rest().positions.size(), 40U);
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  ASSERT_TRUE(session_.document().check().report);
+  EXPECT_TRUE(session_.document().check().report->valid());
+  ASSERT_TRUE(session_.document().metrics());
+  EXPECT_GT(session_.document().metrics()->volume_ratio, 1);
+  session_.editor().undo_stack().undo();
+  EXPECT_FALSE(session_.document().has_cage());
+}
+
+TEST_F(SessionTest, KeepsTheOldCageWhenGeneratingIsCancelled) {
+  session_.open(path("model.obj"), path("cage.obj"));
+  wait();
+  const auto before = session_.document().state().rest;
+  session_.generate();
+  session_.cancel();
+  wait();
+  EXPECT_EQ(session_.document().state().rest, before);
+  EXPECT_TRUE(failures_.empty());
+  EXPECT_NE(message_.find("cancelled"), std::string::npos) << message_;
+}
+
+TEST_F(SessionTest, FindsFacesThatNoLongerFit) {
+  session_.open(path("model.obj"), path("cage.obj"));
+  wait();
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  ASSERT_TRUE(session_.document().check().report->valid());
+  session_.editor().move({0}, std::vector<Vec3>{Vec3(0, 0, 0)}, "Move");
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_FALSE(session_.document().check().report->valid());
+  EXPECT_FALSE(session_.document().offending_faces().empty());
+  session_.editor().undo_stack().undo();
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_TRUE(session_.document().check().report->valid());
+  EXPECT_TRUE(session_.document().offending_faces().empty());
+}
+
+TEST_F(SessionTest, MovesTheModelWithItsCage) {
+  open_and_bind();
+  const std::vector<Vec3> rest = shown_model();
+  std::vector<Index> all;
+  std::vector<Vec3> to;
+  for (Index v = 0; v < cage().size(); ++v) {
+    all.push_back(v);
+    to.push_back(2 * cage()[v] + Vec3(1, 2, 3));
+  }
+  session_.editor().move(all, to, "Move");
+  std::vector<Vec3> expected = rest;
+  for (Vec3& p : expected) {
+    p = 2 * p + Vec3(1, 2, 3);
+  }
+  EXPECT_LT(greatest_distance(shown_model(), expected), 1e-5);
+  session_.editor().undo_stack().undo();
+  EXPECT_LT(greatest_distance(shown_model(), rest), 1e-9);
+}
+
+TEST_F(SessionTest, ShowsWhatTheUserComparesAndBlends) {
+  open_and_bind();
+  const std::vector<Vec3> rest = shown_model();
+  drag(3, {0.3, 0, 0});
+  const std::vector<Vec3> posed = shown_model();
+  EXPECT_GT(greatest_distance(rest, posed), 0.01);
+  session_.document().set_comparing(true);
+  EXPECT_LT(greatest_distance(shown_model(), rest), 1e-9);
+  session_.document().set_comparing(false);
+  EXPECT_LT(greatest_distance(shown_model(), posed), 1e-9);
+  session_.document().set_blend(0.5);
+  std::vector<Vec3> half = rest;
+  for (std::size_t i = 0; i < half.size(); ++i) {
+    half[i] = (rest[i] + posed[i]) / 2;
+  }
+  EXPECT_LT(greatest_distance(shown_model(), half), 1e-6);
+  drag(5, {0, 0.1, 0}); // goes on from what is shown
+  EXPECT_EQ(session_.document().blend(), 1);
+  EXPECT_NEAR((cage()[3] - session_.document().cage_rest().positions[3]).x(), 0.15, 1e-12);
+}
+
+TEST_F(SessionTest, TellsWhichVerticesFollowTheSelection) {
+  open_and_bind();
+  Layers layers = session_.document().layers();
+  layers.weights = true;
+  session_.document().set_layers(layers);
+  session_.editor().select(
+      {.mode = SelectionMode::vertex, .vertices = {4}, .edges = {}, .faces = {}});
+  session_.deform_loop().finish();
+  const std::vector<float> weights(session_.document().model_weights().begin(),
+                                   session_.document().model_weights().end());
+  const std::vector<Vec3> rest = shown_model();
+  ASSERT_EQ(weights.size(), rest.size());
+  drag(4, {0, 0, 1});
+  const std::vector<Vec3> moved = shown_model();
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    EXPECT_NEAR(moved[i].z() - rest[i].z(), weights[i], 1e-5);
+  }
+}
+
+TEST_F(SessionTest, ExportsWhatIsShownAndEveryPose) {
+  open_and_bind();
+  drag(2, {0.2, 0.1, 0});
+  session_.editor().add_pose("bent / sideways");
+  const std::vector<Vec3> posed = shown_model();
+  session_.editor().reset_pose();
+  session_.editor().add_pose("rest");
+  session_.export_poses(path("out.obj"));
+  wait();
+  const auto bent = read_mesh(path("out-bent___sideways.obj"));
+  const auto rest = read_mesh(path("out-rest.obj"));
+  ASSERT_TRUE(bent) << bent.error().message;
+  ASSERT_TRUE(rest) << rest.error().message;
+  EXPECT_LT(greatest_distance(bent->positions, posed), 1e-6);
+  EXPECT_LT(greatest_distance(rest->positions, session_.document().model()->mesh.positions), 1e-12);
+  EXPECT_TRUE(failures_.empty());
+}
+
+TEST_F(SessionTest, ExportsASequenceAlongTheKeyframes) {
+  open_and_bind();
+  session_.document().set_time(1);
+  session_.editor().set_keyframe(1);
+  drag(2, {0.4, 0, 0});
+  const std::vector<Vec3> end = shown_model();
+  session_.editor().set_keyframe(11);
+  TimeLine line = session_.document().state().time_line;
+  line.last = 11;
+  session_.editor().set_time_line(line, "Shorter");
+  session_.export_sequence(path("walk.ply"), 5);
+  wait();
+  EXPECT_TRUE(failures_.empty()) << failures_.front();
+  const auto first = read_mesh(path("walk-0001.ply"));
+  const auto middle = read_mesh(path("walk-0006.ply"));
+  const auto last = read_mesh(path("walk-0011.ply"));
+  ASSERT_TRUE(first && middle && last);
+  const auto& rest = session_.document().model()->mesh.positions;
+  EXPECT_LT(greatest_distance(first->positions, rest), 1e-9);
+  EXPECT_LT(greatest_distance(last->positions, end), 1e-6);
+  EXPECT_GT(greatest_distance(middle->positions, rest), 1e-3);
+}
+
+TEST_F(SessionTest, ExportsWeightsThatBelongToModelAndCage) {
+  open_and_bind();
+  session_.export_weights(path("weights.npz"));
+  wait();
+  const auto stored = read_weights(path("weights.npz"));
+  ASSERT_TRUE(stored) << stored.error().message;
+  EXPECT_TRUE(belongs_to(*stored, session_.document().model()->mesh.positions,
+                         session_.document().cage_rest()));
+}
+
+TEST_F(SessionTest, ComesBackFromAProjectAsItWas) {
+  open_and_bind();
+  drag(1, {0.1, 1.0 / 3, 0});
+  session_.editor().add_pose("one");
+  session_.editor().set_keyframe(7);
+  GenerateSettings settings;
+  settings.method = CageMethod::boxes;
+  settings.options.start = CageStart::obb;
+  settings.options.improve.clearance = 0.0123;
+  session_.set_settings(settings);
+  Layers layers = session_.document().layers();
+  layers.wireframe = true;
+  session_.document().set_layers(layers);
+  const std::vector<Vec3> posed = shown_model();
+  const std::vector<Vec3> pose = cage();
+  EXPECT_TRUE(session_.modified());
+  ASSERT_TRUE(session_.save_project(path("work.cagewright")));
+  EXPECT_FALSE(session_.modified());
+  session_.editor().reset_pose();
+  session_.set_settings({});
+
+  session_.open(path("work.cagewright"));
+  wait();
+  EXPECT_TRUE(failures_.empty()) << failures_.front();
+  EXPECT_EQ(session_.document().mode(), Mode::deform);
+  EXPECT_EQ(cage(), pose);
+  EXPECT_LT(greatest_distance(shown_model(), posed), 1e-9);
+  ASSERT_EQ(session_.document().state().poses.size(), 1U);
+  EXPECT_EQ(session_.document().state().poses[0].name, "one");
+  ASSERT_EQ(session_.document().state().time_line.keys.size(), 1U);
+  EXPECT_EQ(session_.document().state().time_line.keys[0].frame, 7);
+  EXPECT_TRUE(session_.document().layers().wireframe);
+  EXPECT_EQ(session_.settings().method, CageMethod::boxes);
+  EXPECT_EQ(session_.settings().options.improve.clearance, 0.0123);
+  EXPECT_FALSE(session_.modified());
+}
+
+TEST_F(SessionTest, FindsTheModelOfAProjectThatWasMoved) {
+  open_and_bind();
+  ASSERT_TRUE(session_.save_project(path("work.cagewright")));
+  fs::create_directory(path("elsewhere"));
+  fs::rename(path("work.cagewright"), path("elsewhere/work.cagewright"));
+  fs::rename(path("model.obj"), path("elsewhere/model.obj"));
+  QString missing;
+  QObject::connect(&session_, &Session::modelMissing,
+                   [&](const QString&, const QString& model) { missing = model; });
+  session_.open(path("elsewhere/work.cagewright"));
+  wait();
+  EXPECT_TRUE(missing.isEmpty()) << missing.toStdString();
+  EXPECT_EQ(session_.document().model()->path, path("elsewhere/model.obj"));
+  fs::remove(path("elsewhere/model.obj"));
+  session_.open(path("elsewhere/work.cagewright"));
+  wait();
+  EXPECT_FALSE(missing.isEmpty());
+}
+
+TEST_F(SessionTest, SaysWhatIsWrongWithFiles) {
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"no.obj", ""},
+      {"text.obj", "hello\n"},
+      {"empty.cagewright", ""},
+      {"other.cagewright", "{\"format\": \"something\"}"},
+      {"broken.cagewright", "{\"format\": \"cagewright-project\", \"version\": 1, \"cage\": "
+                            "{\"vertices\": [[0,0,0]], \"faces\": [[0,1,2]]}}"},
+      {"poses.cagewright", "{\"format\": \"cagewright-project\", \"version\": 1, \"cage\": "
+                           "{\"vertices\": [[0,0,0],[1,0,0],[0,1,0]], \"faces\": [[0,1,2]]}, "
+                           "\"pose\": [[0,0,0]]}"},
+      {"later.cagewright", "{\"format\": \"cagewright-project\", \"version\": 99}"}};
+  for (const auto& [name, content] : files) {
+    if (name != "no.obj") {
+      std::ofstream(path(name)) << content;
+    }
+    failures_.clear();
+    session_.open(path(name));
+    wait();
+    ASSERT_EQ(failures_.size(), 1U) << name;
+    EXPECT_NE(failures_[0].find(name), std::string::npos) << failures_[0];
+    EXPECT_FALSE(session_.document().has_model());
+  }
+}
+
+TEST_F(SessionTest, RefusesToBindAnOpenCage) {
+  PolygonMesh open_cage;
+  open_cage.positions = {{-9, -9, -9}, {9, -9, -9}, {0, 9, -9}};
+  open_cage.add_face({0, 1, 2});
+  ASSERT_TRUE(write_mesh(open_cage, path("open.obj")));
+  session_.open(path("model.obj"), path("open.obj"));
+  wait();
+  session_.bind();
+  wait();
+  EXPECT_EQ(session_.document().mode(), Mode::refine);
+  EXPECT_EQ(failures_.size(), 1U);
+}
+
+TEST_F(SessionTest, RecoversWorkOfAProgramThatCrashed) {
+  const QDir kept(folder_.filePath("autosave"));
+  open_and_bind();
+  drag(1, {0, 0, 0.5});
+  const std::vector<Vec3> pose = cage();
+  {
+    Recovery recovery(session_, kept);
+    recovery.save();
+    const QStringList files = kept.entryList({"*.cagewright"});
+    ASSERT_EQ(files.size(), 1);
+    EXPECT_TRUE(recovery.abandoned().empty()) << "its own file is not abandoned";
+    // A crash leaves the file without its lock.
+    QFile::copy(kept.filePath(files[0]), kept.filePath("crashed.cagewright"));
+    ASSERT_EQ(recovery.abandoned().size(), 1U);
+  }
+  EXPECT_EQ(kept.entryList({"*.cagewright"}), QStringList("crashed.cagewright"));
+  session_.editor().reset_pose();
+  session_.recover(kept.filePath("crashed.cagewright").toStdString());
+  wait();
+  EXPECT_EQ(cage(), pose);
+  EXPECT_TRUE(session_.modified());
+}
+
+TEST_F(SessionTest, TakesEverythingBackAndDoesItAgain) {
+  open_and_bind();
+  drag(0, {0.1, 0, 0});
+  session_.editor().add_pose("a");
+  session_.editor().rename_pose(0, "b");
+  session_.editor().set_keyframe(3);
+  session_.editor().apply_pose(0);
+  session_.editor().remove_pose(0);
+  session_.editor().refine();
+  drag(2, {0, 0.05, 0});
+  const std::vector<Vec3> end = cage();
+  QUndoStack& stack = session_.editor().undo_stack();
+  const int steps = stack.count();
+  while (stack.canUndo()) {
+    stack.undo();
+  }
+  EXPECT_TRUE(session_.document().state().poses.empty());
+  EXPECT_EQ(session_.document().mode(), Mode::refine) << "binding is taken back, too";
+  for (int i = 0; i < steps; ++i) {
+    stack.redo();
+  }
+  EXPECT_EQ(cage(), end);
+  EXPECT_EQ(session_.document().mode(), Mode::refine);
+  stack.undo();
+  stack.undo();
+  EXPECT_EQ(session_.document().mode(), Mode::deform);
+}
+
+} // namespace
+} // namespace cagewright::app
