@@ -83,12 +83,12 @@ MainWindow::~MainWindow() {
   disconnect(&session_.document(), nullptr, this, nullptr);
   disconnect(&session_.jobs(), nullptr, this, nullptr);
   disconnect(&session_.editor().undo_stack(), nullptr, this, nullptr);
-  // The view and the panels look at the session, which goes before them otherwise.
-  for (QObject* child : QObjectList(children())) {
-    if (child->isWidgetType()) {
-      delete child;
-    }
+  // The view and the panels look at the session: they go before it.
+  delete takeCentralWidget();
+  for (QDockWidget* dock : findChildren<QDockWidget*>()) {
+    delete dock;
   }
+  delete tools_;
 }
 
 void MainWindow::make_panels() {
@@ -126,7 +126,8 @@ void MainWindow::make_panels() {
   auto* figures = new FiguresPanel(session_.document());
   auto* selection = new SelectionPanel(session_.editor());
   dock(this, "dock_generate", tr("Make a Cage"), generate_, Qt::LeftDockWidgetArea, false);
-  dock(this, "dock_figures", tr("Figures"), figures, Qt::RightDockWidgetArea, true);
+  QDockWidget* figures_dock =
+      dock(this, "dock_figures", tr("Figures"), figures, Qt::RightDockWidgetArea, true);
   QDockWidget* select =
       dock(this, "dock_selection", tr("Selection"), selection, Qt::RightDockWidgetArea, true);
   QDockWidget* layers =
@@ -142,7 +143,8 @@ void MainWindow::make_panels() {
   line->raise();
   setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-  resizeDocks({select, layers}, {150, 380}, Qt::Vertical);
+  resizeDocks({line}, {110}, Qt::Vertical);
+  resizeDocks({figures_dock, select, layers}, {230, 150, 340}, Qt::Vertical);
   connect(generate_, &GeneratePanel::loadCageRequested, this, &MainWindow::choose_cage);
   connect(guide_, &GuideBar::openRequested, this, &MainWindow::choose_model);
   connect(guide_, &GuideBar::exportRequested, this, &MainWindow::export_model);

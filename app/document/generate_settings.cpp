@@ -64,6 +64,17 @@ std::vector<GenerateOption> basic_options() {
        GenerateOption::Integer{
            0, 12, [](GenerateSettings& s) -> int& { return slicing(s).depth; }, {}},
        always},
+      {"symmetry", text("Symmetry"),
+       text("Whether the cage is its own mirror image. Automatic: if the model is, in any plane."),
+       Group::basic,
+       GenerateOption::Choice{
+           {"off", "auto", "x", "y", "z"},
+           {text("Off"), text("Automatic"), text("Across X"), text("Across Y"), text("Across Z")},
+           [](const GenerateSettings& s) { return static_cast<int>(s.options.symmetry); },
+           [](GenerateSettings& s, int i) {
+             s.options.symmetry = static_cast<cagewright::Symmetry>(i);
+           }},
+       with_budget},
   };
 }
 

@@ -23,7 +23,8 @@ enum class CageMethod {
 
 struct GenerateSettings {
   CageMethod method = CageMethod::envelope;
-  BudgetCageOptions options = {}; ///< its `start` follows the method
+  BudgetCageOptions options = {.symmetry = cagewright::Symmetry::automatic}; ///< `start` follows
+                                                                             ///< the method
 };
 
 /// One thing to choose. Numbers are shown as they are; lengths are fractions of the model's

@@ -47,6 +47,7 @@ QString big_button_style() {
 GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
     : QWidget(parent), session_(session) {
   auto* layout = new QVBoxLayout(this);
+  setMinimumWidth(270);
 
   auto* content = new QWidget;
   auto* options = new QVBoxLayout(content);

@@ -33,6 +33,7 @@ int tick_step(double least) {
 
 TimeRuler::TimeRuler(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
   setFocusPolicy(Qt::StrongFocus);
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   setObjectName("time_ruler");
   setAccessibleName(tr("Time line"));
   setToolTip(tr("Click to go to a frame; the arrow keys go frame by frame. Diamonds are "
@@ -163,6 +164,7 @@ TimeLinePanel::TimeLinePanel(Editor& editor, QWidget* parent)
   rate_->setDecimals(0);
   layout->addWidget(ruler_);
   layout->addLayout(row);
+  layout->addStretch();
 
   connect(ruler_, &TimeRuler::frameChosen, this, &TimeLinePanel::go_to);
   connect(frame_, &QSpinBox::valueChanged, this, &TimeLinePanel::go_to);

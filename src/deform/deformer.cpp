@@ -128,21 +128,10 @@ void Deformer::move_model() {
 
 std::vector<float> Deformer::influence(std::span<const Index> cage_vertices) const {
   // What a move of all of them by 1 along x does to points at the origin.
-  std::vector<Vec3> along_x(cage_vertices.size(), Vec3::UnitX());
+  const std::vector<Vec3> along_x(cage_vertices.size(), Vec3::UnitX());
   std::vector<Vec3> sums(rest_.size(), Vec3::Zero());
-  const auto add = [&](const auto& weights) {
-    move_points(weights, cage_vertices, along_x, sums, sums);
-  };
-  if (const auto* compact = std::get_if<CompactWeights>(&weights_)) {
-    for (std::size_t k = 0; k < cage_vertices.size(); ++k) {
-      along_x[k] *= compact->steps[cage_vertices[k]];
-    }
-    add(compact->tiles);
-  } else if (const auto* single = std::get_if<FloatWeights>(&weights_)) {
-    add(*single);
-  } else {
-    add(std::get<Weights>(weights_));
-  }
+  std::visit([&](const auto& weights) { move_points(weights, cage_vertices, along_x, sums, sums); },
+             weights_);
   std::vector<float> influence(sums.size());
   std::ranges::transform(sums, influence.begin(),
                          [](const Vec3& sum) { return static_cast<float>(sum.x()); });
