@@ -47,13 +47,16 @@ void OrbitCamera::frame(const Box3& box) {
     return;
   }
   target_ = box.center();
-  // Of the sphere round the box, a tenth larger: it fits whichever way one looks.
-  const double aspect = std::min(1.0, width_ / height_);
-  const double radius =
-      1.1 * (box.diagonal().norm() > 0 ? box.diagonal().norm() / 2 : 0.01 * radius_of(scene_));
-  // A perspective sphere is seen under asin(radius / distance).
-  const double slope = tan_half_height * aspect;
-  distance_ = radius * std::sqrt(1 + slope * slope) / slope;
+  const double slope_y = tan_half_height;
+  const double slope_x = tan_half_height * width_ / height_;
+  const Mat3 a = axes();
+  double needed = 0; // so that no corner is beyond the frame
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 v = a * (box.corner(static_cast<Box3::CornerType>(corner)) - target_);
+    needed =
+        std::max({needed, v.z() + std::abs(v.x()) / slope_x, v.z() + std::abs(v.y()) / slope_y});
+  }
+  distance_ = needed > 0 ? 1.12 * needed : 0.1 * radius_of(scene_);
 }
 
 void OrbitCamera::look(StandardView view) {

@@ -974,9 +974,9 @@ void Viewport::update_caption() {
 bool Viewport::event(QEvent* event) {
   if (event->type() == QEvent::ShortcutOverride) {
     const auto* key = static_cast<QKeyEvent*>(event);
-    const bool plain = (key->modifiers() & ~(Qt::ShiftModifier | Qt::KeypadModifier)) == 0;
-    if (drag_.is_active() || (box_armed_ && key->key() == Qt::Key_Escape) ||
-        (plain && (key->key() == Qt::Key_Tab || key->key() == Qt::Key_Backspace))) {
+    // Digits of the keypad look from the sides; the same digits elsewhere may be shortcuts.
+    const bool keypad = key->modifiers().testFlag(Qt::KeypadModifier);
+    if (drag_.is_active() || keypad || (box_armed_ && key->key() == Qt::Key_Escape)) {
       event->accept();
       return true;
     }
