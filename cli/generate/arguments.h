@@ -25,6 +25,7 @@ struct GenerateArguments {
   GenerateOptions options;  ///< of the union of the boxes
   bool has_budget = false;  ///< an option asks for more than the union of the boxes
   int vertices = 0;         ///< 0: not given
+  std::string density;      ///< a file, or "colors"; empty: even
   BudgetCageOptions budget; ///< of the cage within a budget; its `boxes` are set by run_generate()
 };
 
@@ -34,7 +35,7 @@ void add_slicing_options(CLI::App& command, SlicingOptions& slicing);
 /// --resolution, --registration, --pieces: pipeline_options.cpp
 void add_pipeline_options(CLI::App& command, GenerateOptions& options);
 
-/// --vertices, --faces, --method, --clearance and the rest: budget_options.cpp
+/// --vertices, --faces, --max-gap, --method, --clearance and the rest: budget_options.cpp
 void add_budget_options(CLI::App& command, GenerateArguments& arguments);
 
 } // namespace cagewright::cli

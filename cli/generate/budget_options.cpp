@@ -1,9 +1,24 @@
 #include "generate/arguments.h"
 
+#include <charconv>
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace cagewright::cli {
+namespace {
+
+/// "1%" and "0.01" as 0.01; 0 where it is neither.
+double fraction_of(std::string_view text) {
+  const bool is_percent = text.ends_with('%');
+  text.remove_suffix(is_percent ? 1 : 0);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  return is_number ? (is_percent ? value / 100 : value) : 0;
+}
+
+} // namespace
 
 void add_budget_options(CLI::App& command, GenerateArguments& arguments) {
   const char* group = "Budget";
@@ -21,6 +36,20 @@ void add_budget_options(CLI::App& command, GenerateArguments& arguments) {
   command.add_option("--faces", budget.improve.faces, "The same for triangles; both may be given")
       ->check(CLI::Range(4, 200000))
       ->default_str("")
+      ->each(asked)
+      ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--max-gap", [&budget](const std::string& text) { budget.max_gap = fraction_of(text); },
+          "Make the coarsest cage no point of which is farther from the model than this part of "
+          "the model's diagonal, as 1% or 0.01; --vertices and --faces are then limits")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const double gap = fraction_of(text);
+            return gap > 0 && gap <= 0.5 ? std::string()
+                                         : text + " is not between 0 and 50%, such as 1% or 0.01";
+          },
+          "PERCENT"))
       ->each(asked)
       ->group(group);
   command
@@ -44,12 +73,23 @@ void add_budget_options(CLI::App& command, GenerateArguments& arguments) {
           "With --method envelope: fill holes and gaps narrower than twice this fraction of "
           "the model's diagonal")
       ->check(CLI::Range(0.0, 0.5))
+      ->each(asked)
       ->group(group);
   command
       .add_option("--envelope-resolution", budget.resolution,
                   "With --method envelope: voxels along the model's diagonal; 0: chosen by the "
                   "budget and the model")
       ->check(CLI::Range(0, 512))
+      ->each(asked)
+      ->group(group);
+  command
+      .add_option(
+          "--density", arguments.density,
+          "Where the cage is to be finer: a text or .npy file of one number for each vertex "
+          "of the model (four times as much: edges half as long), or 'colors': where its "
+          "vertex colors are red, and coarser where blue")
+      ->option_text("FILE|colors")
+      ->each(asked)
       ->group(group);
   command
       .add_option(

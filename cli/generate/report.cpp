@@ -173,7 +173,11 @@ nlohmann::json to_json(const BudgetCage& made, const CageMetrics& metrics) {
   j["budget"] = {{"reached", made.report.reached},
                  {"why_not", made.report.why_not},
                  {"clearance", made.clearance},
-                 {"objective", made.report.objective}};
+                 {"objective", made.report.objective},
+                 {"clearance_asked", made.clearance_asked},
+                 {"pieces", made.pieces},
+                 {"joined", made.joined}};
+  j["budget"]["gap"] = made.gap ? nlohmann::json(*made.gap) : nlohmann::json();
   j["cage"] = figures_as_json(metrics);
   j["cage"]["valid"] = true; // make_budget_cage() returns no other
   j["symmetry"] = symmetry_json(made);
@@ -196,23 +200,42 @@ std::string summary(const GeneratedCage& made, const CageMetrics& metrics) {
 }
 
 std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
-  const std::string start =
-      made.boxes ? fmt::format("  made from {} boxes, {} vertices\n", made.boxes->leaves.size(),
-                               made.start_vertices)
-                 : fmt::format("  made from an envelope of {} voxels along the diagonal, {} "
-                               "vertices{}\n",
-                               made.resolution, made.start_vertices,
-                               made.bridges > 0 ? fmt::format("; {} bridges between pieces of the "
-                                                              "model",
-                                                              made.bridges)
-                                                : "");
-  const std::string verdict =
-      made.report.reached ? std::string("a valid cage\n")
-                          : "a valid cage, larger than asked for: " + made.report.why_not + "\n";
-  const std::string boxes =
-      made.why_not_boxes.empty() ? "" : "  not made from boxes: " + made.why_not_boxes + "\n";
-  return verdict + start + boxes + symmetry_line(made) + figures_as_text(metrics) +
-         times_line(made.times);
+  std::string text = made.report.reached
+                         ? "a valid cage\n"
+                         : "a valid cage, but not as asked for: " + made.report.why_not + "\n";
+  if (made.boxes) {
+    text += fmt::format("  made from {} boxes, {} vertices\n", made.boxes->leaves.size(),
+                        made.start_vertices);
+  } else if (made.resolution > 0) {
+    text += fmt::format("  made from an envelope of {} voxels along the diagonal, {} vertices\n",
+                        made.resolution, made.start_vertices);
+  }
+  if (made.bridges > 0) {
+    text += fmt::format("  {} bridges between pieces of the model\n", made.bridges);
+  }
+  if (made.pieces > 1 || made.joined > 0) {
+    text += fmt::format("  {} closed pieces\n", made.pieces);
+  }
+  if (made.joined > 0) {
+    text += fmt::format("  {} groups of the model's pieces share a cage with others: their own "
+                        "would meet, lie within another, or be too small for the budget\n",
+                        made.joined);
+  }
+  if (!made.why_not_boxes.empty()) {
+    text += "  not made from boxes: " + made.why_not_boxes + "\n";
+  }
+  text += symmetry_line(made);
+  if (made.clearance < made.clearance_asked) {
+    text += fmt::format("  the boxes came nearer than the clearance asked for: {:.4f} % of the "
+                        "diagonal was kept, not {:.4f} %\n",
+                        100 * made.clearance, 100 * made.clearance_asked);
+  }
+  if (made.gap) {
+    text += fmt::format("  no point of the cage is farther than {:.4f} % of the diagonal from the "
+                        "model (proved)\n",
+                        100 * *made.gap);
+  }
+  return text + figures_as_text(metrics) + times_line(made.times);
 }
 
 } // namespace cagewright::cli

@@ -1,11 +1,14 @@
 #include "generate/run.h"
 
+#include "generate/density.h"
 #include "generate/report.h"
 #include "load.h"
 
 #include "cage/hexahedron.h"
 #include "io/atomic_file.h"
+#include "io/read_mesh.h"
 #include "io/write_mesh.h"
+#include "mesh/triangulate.h"
 #include "validate/cage_metrics.h"
 #include "voxel/voxel_mesh.h"
 
@@ -97,11 +100,12 @@ int make_cage(const GenerateArguments& arguments, const Session& session,
 }
 
 int make_cage_within_budget(const GenerateArguments& arguments, const Session& session,
-                            const TriangleMesh& model) {
+                            const TriangleMesh& model, const std::vector<double>& density) {
   const Progress progress = session.progress();
   BudgetCageOptions options = arguments.budget;
   options.boxes = arguments.options;
-  if (arguments.vertices > 0 || options.improve.faces > 0) {
+  options.improve.density = density;
+  if (arguments.vertices > 0 || options.improve.faces > 0 || options.max_gap > 0) {
     options.improve.vertices = arguments.vertices;
   }
   const Result<BudgetCage> made = make_budget_cage(model, options, progress.part(0, 0.97));
@@ -125,15 +129,26 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
   if (const Status writable = can_write_mesh(arguments.output); !writable) {
     return fail(writable.error());
   }
-  const Result<TriangleMesh> model = load_triangles(arguments.model);
-  if (!model) {
-    return fail(model.error());
+  const Result<PolygonMesh> mesh = read_mesh(arguments.model);
+  if (!mesh) {
+    return fail(mesh.error());
   }
+  const TriangleMesh model = to_triangle_mesh(*mesh);
   if (arguments.emit != Emit::cage) {
-    return emit_stage(arguments, session, *model);
+    return emit_stage(arguments, session, model);
   }
-  return arguments.has_budget ? make_cage_within_budget(arguments, session, *model)
-                              : make_cage(arguments, session, *model);
+  if (!arguments.has_budget) {
+    return make_cage(arguments, session, model);
+  }
+  std::vector<double> density;
+  if (!arguments.density.empty()) {
+    Result<std::vector<double>> asked = density_of(arguments.density, *mesh);
+    if (!asked) {
+      return fail(asked.error());
+    }
+    density = std::move(*asked);
+  }
+  return make_cage_within_budget(arguments, session, model, density);
 }
 
 } // namespace cagewright::cli

@@ -1,5 +1,8 @@
 #include "cage/budget_cage.h"
 
+#include "cage/budget_pieces.h"
+#include "cage/improve_to_gap.h"
+#include "cage/pieces.h"
 #include "cage/symmetric_cage.h"
 #include "cage/unit_frame.h"
 #include "envelope/envelope.h"
@@ -41,27 +44,49 @@ Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOpt
 
 Result<TriangleMesh> start_from_boxes(TriangleView model, const BudgetCageOptions& options,
                                       BudgetCage& made, const Progress& progress) {
-  Result<GeneratedCage> boxes = generate_cage(model, options.boxes, progress);
+  GenerateOptions generate = options.boxes;
+  generate.boxes.clearance = options.improve.clearance;
+  Result<GeneratedCage> boxes = generate_cage(model, generate, progress);
   if (!boxes) {
     return boxes.error();
   }
   made.boxes = std::move(*boxes);
   TriangleMesh start = made.boxes->cage;
-  // Boxes may come nearer than the clearance. No step of the improvement comes nearer still.
+  // Boxes that were joined may come nearer than the clearance. No step of the improvement comes
+  // nearer still.
   const double least = mesh_distance(TriangleBvh(start), TriangleBvh(model)).distance;
   constexpr double below = 0.99;
   made.clearance = std::min(options.improve.clearance, below * least / diagonal(model.positions));
   return start;
 }
 
-} // namespace
+Error not_valid(const ValidityReport& report) {
+  return {ErrorCode::no_valid_cage, "the cage that was made did not pass the check (" +
+                                        std::string(name_of(report.violations.front().kind)) +
+                                        "); try another resolution"};
+}
 
-Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& options,
-                                    const Progress& progress) {
+Result<Improved> within_gap(TriangleView start, TriangleView model,
+                            const ImproveOptions& improvement, const BudgetCageOptions& options,
+                            BudgetCage& made, const Progress& progress) {
+  Result<ImprovedToGap> result =
+      improve_to_gap(start, model, improvement, options.max_gap, progress);
+  if (!result) {
+    return result.error();
+  }
+  made.gap = result->gap;
+  return std::move(result->improved);
+}
+constexpr int voxels_for_pieces = 96; // along the longest edge, to tell which pieces are apart
+
+/// One closed surface for the whole model.
+Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& options,
+                                  const Progress& progress) {
   if (const Result<UnitFrame> frame = unit_frame(model); !frame) {
     return frame.error();
   }
   BudgetCage made;
+  made.clearance_asked = options.improve.clearance;
   Stopwatch watch(made.times);
   if (options.symmetry != Symmetry::off) {
     const ChosenPlane chosen =
@@ -72,6 +97,7 @@ Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions&
       Result<BudgetCage> symmetric =
           make_symmetric_cage(model, *chosen.plane, options, progress.part(started / 2, 1));
       if (symmetric) {
+        symmetric->clearance_asked = made.clearance_asked;
         symmetric->times.insert(symmetric->times.begin(), made.times.begin(), made.times.end());
         return symmetric;
       }
@@ -94,7 +120,10 @@ Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions&
 
   ImproveOptions improvement = options.improve;
   improvement.clearance = made.clearance;
-  Result<Improved> result = improve(*start, model, improvement, progress.part(started, improved));
+  const Progress improving = progress.part(started, improved);
+  Result<Improved> result = options.max_gap > 0
+                                ? within_gap(*start, model, improvement, options, made, improving)
+                                : improve(*start, model, improvement, improving);
   if (!result) {
     return result.error();
   }
@@ -108,13 +137,63 @@ Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions&
     return validity.error();
   }
   if (!validity->valid()) {
-    return Error{ErrorCode::no_valid_cage,
-                 "the cage that was made did not pass the check (" +
-                     std::string(name_of(validity->violations.front().kind)) +
-                     "); try another resolution"};
+    return not_valid(*validity);
   }
   watch.lap("check");
   return made;
+}
+
+} // namespace
+
+Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& asked,
+                                    const Progress& progress) {
+  if (asked.max_gap != 0) {
+    if (const Status can = can_keep_gap(asked.max_gap, asked.improve.clearance); !can) {
+      return can.error();
+    }
+  }
+  const bool is_apart = asked.boxes.boxes.pieces == Pieces::apart;
+  const bool can_mirror = !is_apart && !(asked.max_gap > 0);
+  BudgetCageOptions options = asked;
+  if (!can_mirror && asked.symmetry != Symmetry::off) {
+    if (asked.symmetry != Symmetry::automatic) {
+      return Error{ErrorCode::invalid_option,
+                   "a cage within a greatest gap, or in pieces, cannot be mirrored yet; leave out "
+                   "the symmetry, or the other option"};
+    }
+    options.symmetry = Symmetry::off;
+  }
+  if (!is_apart) {
+    return make_one_piece(model, options, progress);
+  }
+  if (const Result<UnitFrame> frame = unit_frame(model); !frame) {
+    return frame.error();
+  }
+  if (!options.improve.density.empty() &&
+      options.improve.density.size() != model.positions.size()) {
+    return Error{ErrorCode::invalid_option, "there must be one density for each model vertex"};
+  }
+  const Result<PieceGroups> groups =
+      piece_groups(model, options.improve.clearance, voxels_for_pieces);
+  if (!groups) {
+    return groups.error();
+  }
+  if (groups->count == 1) {
+    BudgetCageOptions one = options;
+    one.boxes.boxes.pieces = Pieces::together;
+    return make_one_piece(model, one, progress);
+  }
+  Result<BudgetCage> made =
+      make_pieces(model, *groups, options, make_one_piece, progress.part(0, improved));
+  if (!made) {
+    return made;
+  }
+  const Result<ValidityReport> validity = validate_cage(
+      made->cage, model, {.allow_pieces = true, .first_only = true}, progress.part(improved, 1));
+  if (!validity) {
+    return validity.error();
+  }
+  return validity->valid() ? std::move(made) : not_valid(*validity);
 }
 
 } // namespace cagewright

@@ -30,19 +30,30 @@ enum class Symmetry {
 struct BudgetCageOptions {
   CageStart start = CageStart::envelope;
   ImproveOptions improve = {}; ///< the budget and the clearance among them
-  int resolution = 0;          ///< of the envelope: voxels along the model's diagonal; 0: chosen
-  double closing = 0;          ///< of the envelope: gaps narrower than twice this are filled
-  GenerateOptions boxes = {};  ///< of the boxes
-  Symmetry symmetry = Symmetry::off;
+  /// Make the coarsest cage no point of which is farther from the model than this, in diagonals of
+  /// its box; the budget is then a limit. 0: as fine as the budget allows. See improve_to_gap().
+  double max_gap = 0;
+  int resolution = 0; ///< of the envelope: voxels along the model's diagonal; 0: chosen
+  double closing = 0; ///< of the envelope: gaps narrower than twice this are filled
+  /// Of the boxes. Their Pieces hold for both starts: with Pieces::apart each group of pieces gets
+  /// a closed cage of its own, and a share of the budget by its surface area; groups whose cages
+  /// would meet or lie one within another, or that are too small for the budget, are joined.
+  GenerateOptions boxes = {};
+  Symmetry symmetry = Symmetry::off; ///< not with max_gap or Pieces::apart
 };
 
 struct BudgetCage {
   TriangleMesh cage; ///< valid in the sense of validate_cage(), on exactly these coordinates
   ImproveReport report;
   double clearance = 0; ///< that the improvement kept: less than asked for if the boxes came nearer
+  double clearance_asked = 0;
   std::size_t start_vertices = 0;
-  int resolution = 0;                  ///< of the envelope
-  int bridges = 0;                     ///< of the envelope: rods that join pieces of the model
+  int resolution = 0; ///< of the envelope
+  int bridges = 0;    ///< of the envelope: rods that join pieces of the model
+  int pieces = 1;     ///< closed surfaces of the cage
+  int joined = 0;     ///< groups of pieces that are apart, yet had to share a cage with others
+  /// With max_gap: no point of the cage is farther from the model, in diagonals: proved.
+  std::optional<double> gap;
   std::optional<GeneratedCage> boxes;  ///< what the boxes gave, if they were the start
   std::string why_not_boxes;           ///< if they were to be the start, and were not
   std::optional<MirrorPairing> mirror; ///< of a cage that is its own mirror image

@@ -21,6 +21,9 @@ Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& o
   if (options.resolution < 8 || options.resolution > 512) {
     return Error{ErrorCode::invalid_option, "resolution must be from 8 to 512"};
   }
+  if (!(options.clearance >= 0 && options.clearance < 1)) {
+    return Error{ErrorCode::invalid_option, "the clearance must be at least 0 and below 1"};
+  }
   const Result<UnitFrame> frame = unit_frame(model);
   if (!frame) {
     return frame.error();
@@ -30,17 +33,24 @@ Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& o
   Stopwatch watch(made.times);
   const std::vector<Vec3> positions = to_unit(*frame, model.positions);
   const TriangleView unit{positions, model.triangles};
-  const VoxelizeOptions voxels{.resolution = options.resolution};
+  const auto voxels_in = [&](const OrientedBox& box) {
+    constexpr double a_little_more = 1.05; // the boxes are then strictly clear
+    const double size = 2 * box.half.maxCoeff() / (options.resolution - 1);
+    return VoxelizeOptions{.resolution = options.resolution,
+                           .margin = a_little_more * options.clearance / size};
+  };
 
   made.vertex_box = pca_box(positions);
-  Result<VoxelGrid> first = voxelize(unit, made.vertex_box, voxels, progress.part(0, 0.4));
+  Result<VoxelGrid> first =
+      voxelize(unit, made.vertex_box, voxels_in(made.vertex_box), progress.part(0, 0.4));
   if (!first) {
     return first.error();
   }
   made.point_box = pca_box(point_set(unit, *first));
   watch.lap("first voxels");
 
-  Result<VoxelGrid> second = voxelize(unit, made.point_box, voxels, progress.part(0.4, 0.8));
+  Result<VoxelGrid> second =
+      voxelize(unit, made.point_box, voxels_in(made.point_box), progress.part(0.4, 0.8));
   if (!second) {
     return second.error();
   }

@@ -25,6 +25,9 @@ struct DecomposeOptions {
   int resolution = 64; ///< voxels along the longest axis of the model's box; 8 to 512
   Pieces pieces = Pieces::together;
   SlicingOptions slicing = {};
+  /// In diagonals of the model's box: the boxes enclose every voxel that comes so near to the
+  /// model, so that their surface keeps this distance. 0: those that touch it.
+  double clearance = 0;
 };
 
 /// All that was made on the way to the boxes.

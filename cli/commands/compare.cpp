@@ -1,0 +1,238 @@
+#include "cage_figures.h"
+#include "load.h"
+#include "session.h"
+
+#include "deform/standard_poses.h"
+#include "io/atomic_file.h"
+#include "io/read_mesh.h"
+#include "mesh/triangulate.h"
+#include "validate/cage_metrics.h"
+#include "validate/model_volume.h"
+#include "validate/validate_cage.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cagewright::cli {
+namespace {
+
+struct Options {
+  std::string model;
+  std::vector<std::string> cages;
+  std::string json;
+  bool no_poses = false;
+};
+
+/// All that is said of one cage.
+struct Compared {
+  std::string path;
+  ValidityReport validity;
+  std::size_t faces = 0; ///< as the file has them
+  std::size_t quads = 0;
+  CageMetrics metrics;
+  std::optional<PoseErrors> poses; ///< none: not asked for, or the cage cannot carry a model
+};
+
+Result<Compared> describe(const std::string& path, TriangleView model, const ModelVolume& volume,
+                          bool with_poses, const Progress& progress) {
+  const Result<PolygonMesh> cage = read_mesh(path);
+  if (!cage) {
+    return cage.error();
+  }
+  Compared compared;
+  compared.path = path;
+  compared.faces = cage->face_count();
+  for (std::size_t f = 0; f < cage->face_count(); ++f) {
+    compared.quads += cage->face(f).size() == 4 ? 1 : 0;
+  }
+  Result<ValidityReport> report =
+      validate_cage(*cage, model, {.allow_pieces = true, .max_listed = 0}, progress.part(0, 0.4));
+  if (!report) {
+    return report.error();
+  }
+  compared.validity = std::move(*report);
+  compared.metrics = measure_cage(to_triangle_mesh(*cage), model, volume);
+  if (with_poses) {
+    const Result<PoseErrors> poses = pose_errors(*cage, model.positions, progress.part(0.6, 1));
+    if (poses) {
+      compared.poses = *poses;
+    } else if (poses.error().code == ErrorCode::cancelled) {
+      return poses.error();
+    }
+  }
+  return compared;
+}
+
+const char* first_violation(const ValidityReport& report) {
+  for (std::size_t k = 0; k < violation_kinds; ++k) {
+    if (report.counts[k] > 0) {
+      return name_of(static_cast<ViolationKind>(k)).data();
+    }
+  }
+  return "";
+}
+
+/// The rows of the table: what it is, and how it reads for a cage.
+struct Row {
+  std::string title;
+  std::string (*cell)(const Compared& cage);
+};
+
+std::string percent(double fraction) {
+  return fmt::format("{:.3f}", 100 * fraction);
+}
+
+std::string pose_cell(const Compared& cage, StandardPose pose, double PoseError::*which) {
+  return cage.poses ? percent(cage.poses->of[static_cast<std::size_t>(pose)].*which) : "-";
+}
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> table = {
+      {"valid", [](const Compared& c) -> std::string { return c.validity.valid() ? "yes" : "NO"; }},
+      {"vertices", [](const Compared& c) { return fmt::format("{}", c.metrics.vertices); }},
+      {"faces", [](const Compared& c) { return fmt::format("{}", c.faces); }},
+      {"quads", [](const Compared& c) { return fmt::format("{}", c.quads); }},
+      {"volume ratio",
+       [](const Compared& c) {
+         return c.metrics.volume_ratio != 0 ? fmt::format("{:.3f}", c.metrics.volume_ratio) : "-";
+       }},
+      {"least gap %", [](const Compared& c) { return percent(c.metrics.clearance); }},
+      {"mean gap %", [](const Compared& c) { return percent(c.metrics.mean_distance); }},
+      {"greatest gap %", [](const Compared& c) { return percent(c.metrics.max_distance); }},
+      {"2r/R least",
+       [](const Compared& c) { return fmt::format("{:.3f}", c.metrics.min_quality); }},
+      {"2r/R 5th percentile",
+       [](const Compared& c) { return fmt::format("{:.3f}", c.metrics.low_quality); }},
+      {"valence, greatest",
+       [](const Compared& c) { return fmt::format("{}", c.metrics.max_valence); }},
+      {"bend: mean error %",
+       [](const Compared& c) { return pose_cell(c, StandardPose::bend, &PoseError::mean); }},
+      {"bend: greatest %",
+       [](const Compared& c) { return pose_cell(c, StandardPose::bend, &PoseError::max); }},
+      {"twist: mean error %",
+       [](const Compared& c) { return pose_cell(c, StandardPose::twist, &PoseError::mean); }},
+      {"twist: greatest %",
+       [](const Compared& c) { return pose_cell(c, StandardPose::twist, &PoseError::max); }},
+  };
+  return table;
+}
+
+std::string as_text(const std::vector<Compared>& cages) {
+  std::size_t left = 0;
+  for (const Row& row : rows()) {
+    left = std::max(left, row.title.size());
+  }
+  std::vector<std::string> names;
+  std::string text(left, ' ');
+  for (const Compared& cage : cages) {
+    names.push_back(std::filesystem::path(cage.path).filename().string());
+    text += fmt::format("  {:>9}", names.back());
+  }
+  text += "\n";
+  for (const Row& row : rows()) {
+    text += fmt::format("{:<{}}", row.title, left);
+    for (std::size_t i = 0; i < cages.size(); ++i) {
+      text +=
+          fmt::format("  {:>{}}", row.cell(cages[i]), std::max<std::size_t>(9, names[i].size()));
+    }
+    text += "\n";
+  }
+  for (const Compared& cage : cages) {
+    if (!cage.validity.valid()) {
+      text +=
+          fmt::format("{}: not a valid cage of this model ({}); 'cagewright check' says where\n",
+                      cage.path, first_violation(cage.validity));
+    }
+  }
+  return text + "Gaps and errors are in % of the model's diagonal.\n";
+}
+
+nlohmann::json as_json(const Compared& cage) {
+  nlohmann::json json = figures_as_json(cage.metrics);
+  json["file"] = cage.path;
+  json["valid"] = cage.validity.valid();
+  json["triangles"] = cage.metrics.faces;
+  json["faces"] = cage.faces;
+  json["quads"] = cage.quads;
+  json["violations"] = nlohmann::json::object();
+  for (std::size_t k = 0; k < violation_kinds; ++k) {
+    if (cage.validity.counts[k] > 0) {
+      json["violations"][name_of(static_cast<ViolationKind>(k))] = cage.validity.counts[k];
+    }
+  }
+  json["poses"] = nullptr;
+  if (cage.poses) {
+    json["poses"] = {{"undefined", cage.poses->undefined}};
+    for (const StandardPose pose : standard_poses) {
+      const PoseError& error = cage.poses->of[static_cast<std::size_t>(pose)];
+      json["poses"][std::string(name_of(pose))] = {{"mean_error", error.mean},
+                                                   {"max_error", error.max}};
+    }
+  }
+  return json;
+}
+
+int run(const Options& options, const Session& session) {
+  const Result<TriangleMesh> model = load_triangles(options.model);
+  if (!model) {
+    return fail(model.error());
+  }
+  const ModelVolume volume = model_volume(*model);
+  const Progress progress = session.progress();
+  std::vector<Compared> cages;
+  const auto count = static_cast<double>(options.cages.size());
+  for (std::size_t i = 0; i < options.cages.size(); ++i) {
+    Result<Compared> cage =
+        describe(options.cages[i], *model, volume, !options.no_poses,
+                 progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+    if (!cage) {
+      return fail(cage.error());
+    }
+    cages.push_back(std::move(*cage));
+  }
+  progress(1, "done");
+  if (!options.json.empty()) {
+    nlohmann::json json = {{"format", "cagewright-compare"},
+                           {"version", 1},
+                           {"model", options.model},
+                           {"cages", nlohmann::json::array()}};
+    for (const Compared& cage : cages) {
+      json["cages"].push_back(as_json(cage));
+    }
+    if (const Status written = write_file_atomically(options.json, json.dump(1) + "\n"); !written) {
+      return fail(written.error());
+    }
+  }
+  if (!session.quiet) {
+    std::fputs(as_text(cages).c_str(), stdout);
+  }
+  return done;
+}
+
+} // namespace
+
+void add_compare(CLI::App& app, Session& session) {
+  CLI::App* command = app.add_subcommand(
+      "compare", "Figures of several cages of a model side by side, valid or not, and how well "
+                 "the model follows each through a standard bend and twist");
+  auto options = std::make_shared<Options>();
+  command->add_option("model", options->model, "The model that the cages are for")->required();
+  command->add_option("cages", options->cages, "The cages")->required();
+  command->add_option("--json", options->json, "Write the same and more to this file as JSON");
+  command->add_flag("--no-poses", options->no_poses,
+                    "Leave out the bend and the twist, which take longest on large models");
+  command->callback([&session, options] {
+    session.run = [&session, options] { return run(*options, session); };
+  });
+}
+
+} // namespace cagewright::cli

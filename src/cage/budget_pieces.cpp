@@ -1,0 +1,241 @@
+#include "cage/budget_pieces.h"
+
+#include "cage/unit_frame.h"
+#include "mesh/measures.h"
+#include "mesh/shapes.h"
+#include "validate/validate_cage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace cagewright {
+namespace {
+
+constexpr int voxels_for_pieces = 96;     // along the longest edge, to tell which pieces are apart
+constexpr int vertices_for_a_piece = 8;   // a box
+constexpr double largest_clearance = 0.2; // of a piece's own diagonal: smaller pieces join others
+
+/// The budget of a model, shared out by surface area.
+std::vector<int> shares(int budget, int least, const std::vector<double>& areas) {
+  std::vector<int> share(areas.size(), budget);
+  if (budget == 0) { // no limit
+    return share;
+  }
+  const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
+  int left = budget - least * static_cast<int>(areas.size());
+  const int to_share = left;
+  for (std::size_t g = 0; g < areas.size(); ++g) {
+    const double part = all > 0 ? areas[g] / all : 0;
+    share[g] = static_cast<int>(std::floor(part * to_share));
+    left -= share[g];
+    share[g] += least;
+  }
+  const auto largest = std::max_element(areas.begin(), areas.end());
+  share[static_cast<std::size_t>(largest - areas.begin())] += left;
+  return share;
+}
+
+/// The other group whose box is nearest.
+std::size_t nearest_group(std::size_t g, const std::vector<Box3>& boxes) {
+  std::size_t best = g == 0 ? 1 : 0;
+  for (std::size_t h = 0; h < boxes.size(); ++h) {
+    if (h != g && boxes[g].squaredExteriorDistance(boxes[h]) <
+                      boxes[g].squaredExteriorDistance(boxes[best])) {
+      best = h;
+    }
+  }
+  return best;
+}
+
+/// Joins groups to the nearest other one until each can have a cage of its own: a surface of some
+/// extent, larger than the clearance, and vertices enough.
+PieceGroups fit_for_cages(TriangleView model, PieceGroups groups,
+                          const BudgetCageOptions& options) {
+  const double clearance = options.improve.clearance * diagonal(model.positions);
+  std::size_t most = groups.count;
+  if (options.improve.vertices > 0) {
+    most = static_cast<std::size_t>(options.improve.vertices / vertices_for_a_piece);
+  }
+  if (options.improve.faces > 0) {
+    most = std::min(
+        most, static_cast<std::size_t>(options.improve.faces / (2 * vertices_for_a_piece - 4)));
+  }
+  while (groups.count > 1) {
+    const std::vector<ModelPart> parts = parts_of(model, groups);
+    std::vector<Box3> boxes;
+    std::size_t smallest = 0;
+    std::size_t unfit = groups.count;
+    for (std::size_t g = 0; g < parts.size(); ++g) {
+      boxes.push_back(bounding_box(parts[g].mesh.positions));
+      const double size = boxes[g].diagonal().norm();
+      smallest = size < boxes[smallest].diagonal().norm() ? g : smallest;
+      if (unfit == groups.count &&
+          (!unit_frame(parts[g].mesh) || clearance > largest_clearance * size)) {
+        unfit = g;
+      }
+    }
+    if (unfit == groups.count && groups.count <= std::max<std::size_t>(1, most)) {
+      break;
+    }
+    std::vector<std::size_t> into(groups.count);
+    std::iota(into.begin(), into.end(), 0);
+    const std::size_t g = unfit < groups.count ? unfit : smallest;
+    into[g] = nearest_group(g, boxes);
+    groups = joined_groups(groups, into);
+  }
+  return groups;
+}
+
+/// The options for a part of the model: lengths are stated in the part's own diagonals.
+BudgetCageOptions options_for(const ModelPart& part, double whole, const BudgetCageOptions& options,
+                              std::vector<double>& density) {
+  BudgetCageOptions own = options;
+  const double factor = whole / diagonal(part.mesh.positions);
+  own.boxes.boxes.pieces = Pieces::together;
+  own.improve.clearance *= factor;
+  own.max_gap *= factor;
+  own.closing = std::min(0.5, own.closing * factor);
+  if (own.resolution > 0) {
+    own.resolution = std::max(8, static_cast<int>(std::lround(own.resolution / factor)));
+  }
+  if (!options.improve.density.empty()) {
+    density.clear();
+    for (const Index v : part.vertices) {
+      density.push_back(options.improve.density[v]);
+    }
+    own.improve.density = density;
+  }
+  return own;
+}
+
+/// Which groups must be joined because their cages meet or lie one within another: exact.
+std::vector<std::size_t> joins_of(const std::vector<std::optional<BudgetCage>>& cages) {
+  std::vector<std::size_t> into(cages.size());
+  std::iota(into.begin(), into.end(), 0);
+  std::vector<Box3> boxes;
+  for (const std::optional<BudgetCage>& cage : cages) {
+    boxes.push_back(bounding_box(cage->cage.positions));
+  }
+  for (std::size_t a = 0; a < cages.size(); ++a) {
+    for (std::size_t b = a + 1; b < cages.size() && into[a] == a; ++b) {
+      if (boxes[a].intersects(boxes[b]) && !is_embedded(joined(cages[a]->cage, cages[b]->cage))) {
+        into[a] = b;
+      }
+    }
+  }
+  return into;
+}
+
+void add_times(std::vector<StageTime>& times, const std::vector<StageTime>& more) {
+  for (const StageTime& time : more) {
+    const auto same = std::find_if(times.begin(), times.end(),
+                                   [&](const StageTime& t) { return t.stage == time.stage; });
+    if (same == times.end()) {
+      times.push_back(time);
+    } else {
+      same->seconds += time.seconds;
+    }
+  }
+}
+
+/// All cages as one, and what is known of them together.
+BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
+                    const std::vector<ModelPart>& parts, double whole,
+                    const BudgetCageOptions& options) {
+  BudgetCage all;
+  all.report.reached = true;
+  all.clearance = options.improve.clearance;
+  all.clearance_asked = options.improve.clearance;
+  all.pieces = 0;
+  for (std::size_t g = 0; g < cages.size(); ++g) {
+    BudgetCage& cage = *cages[g];
+    const double factor = diagonal(parts[g].mesh.positions) / whole;
+    all.cage = all.pieces == 0 ? std::move(cage.cage) : joined(all.cage, cage.cage);
+    all.clearance = std::min(all.clearance, cage.clearance * factor);
+    all.report.objective += cage.report.objective * factor * factor * factor;
+    all.report.simplify_seconds += cage.report.simplify_seconds;
+    all.report.refine_seconds += cage.report.refine_seconds;
+    if (!cage.report.reached) {
+      all.report.reached = false;
+      all.report.why_not = cage.report.why_not;
+    }
+    if (cage.gap) {
+      all.gap = std::max(all.gap.value_or(0), *cage.gap * factor);
+    }
+    all.start_vertices += cage.start_vertices;
+    all.resolution = std::max(all.resolution, cage.resolution);
+    all.bridges += cage.bridges;
+    ++all.pieces;
+    add_times(all.times, cage.times);
+  }
+  return all;
+}
+
+} // namespace
+
+Result<BudgetCage> make_pieces(TriangleView model, PieceGroups groups,
+                               const BudgetCageOptions& options, const MakeCage& make_one,
+                               const Progress& progress) {
+  const std::size_t apart = groups.count;
+  const double whole = diagonal(model.positions);
+  groups = fit_for_cages(model, std::move(groups), options);
+  std::vector<ModelPart> parts;
+  std::vector<std::optional<BudgetCage>> cages;
+  while (true) {
+    parts = parts_of(model, groups);
+    std::vector<double> areas;
+    for (const ModelPart& part : parts) {
+      areas.push_back(surface_area(part.mesh));
+    }
+    const std::vector<int> vertices = shares(options.improve.vertices, vertices_for_a_piece, areas);
+    const std::vector<int> faces =
+        shares(options.improve.faces, 2 * vertices_for_a_piece - 4, areas);
+    cages.resize(parts.size());
+    for (std::size_t g = 0; g < parts.size(); ++g) {
+      if (cages[g]) {
+        continue;
+      }
+      std::vector<double> density;
+      BudgetCageOptions own = options_for(parts[g], whole, options, density);
+      own.improve.vertices = parts.size() > 1 ? vertices[g] : options.improve.vertices;
+      own.improve.faces = parts.size() > 1 ? faces[g] : options.improve.faces;
+      const auto count = static_cast<double>(parts.size());
+      Result<BudgetCage> made = make_one(
+          parts[g].mesh, own,
+          progress.part(static_cast<double>(g) / count, static_cast<double>(g + 1) / count));
+      if (!made) {
+        return made.error();
+      }
+      cages[g] = std::move(*made);
+    }
+    const std::vector<std::size_t> into = joins_of(cages);
+    const PieceGroups fewer = joined_groups(groups, into);
+    if (fewer.count == groups.count) {
+      break;
+    }
+    // The cages of groups that stay as they are keep.
+    std::vector<std::optional<BudgetCage>> kept(fewer.count);
+    std::vector<std::size_t> members(fewer.count, 0);
+    std::vector<bool> seen(groups.count, false);
+    for (std::size_t v = 0; v < groups.group_of.size(); ++v) {
+      const Index g = groups.group_of[v];
+      if (!seen[g]) {
+        seen[g] = true;
+        ++members[fewer.group_of[v]];
+        kept[fewer.group_of[v]] =
+            members[fewer.group_of[v]] == 1 ? std::move(cages[g]) : std::optional<BudgetCage>();
+      }
+    }
+    cages = std::move(kept);
+    groups = fewer;
+  }
+  BudgetCage all = gathered(cages, parts, whole, options);
+  all.joined = static_cast<int>(apart - groups.count);
+  return all;
+}
+
+} // namespace cagewright

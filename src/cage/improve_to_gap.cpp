@@ -1,0 +1,173 @@
+#include "cage/improve_to_gap.h"
+
+#include "mesh/measures.h"
+#include "spatial/bvh.h"
+#include "validate/greatest_gap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace cagewright {
+namespace {
+
+constexpr int first_try = 100;
+constexpr int fewest = 4;
+constexpr int most = 20000;
+constexpr int runs = 12;
+constexpr double close_enough = 1.05; // of two numbers of vertices: neither is worth another run
+constexpr double bound_width = 0.002; // of the gap: how well it is bounded
+constexpr double usual_power = 0.8;   // gaps fall about with this power of the vertices
+
+std::string percent(double fraction) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g %%", 100 * fraction);
+  return text.data();
+}
+
+class Search {
+public:
+  Search(TriangleView start, TriangleView model, const ImproveOptions& options, double max_gap)
+      : start_(start), model_(model), options_(options), max_gap_(max_gap),
+        diagonal_(diagonal(model.positions)), bvh_(model) {
+    limit_ = std::min<int>(most, static_cast<int>(start.positions.size()));
+    if (options.vertices > 0) {
+      limit_ = std::min(limit_, options.vertices);
+    }
+    if (options.faces > 0) {
+      limit_ = std::min(limit_, options.faces / 2 + 2);
+    }
+    limit_ = std::max(limit_, fewest);
+  }
+
+  Result<ImprovedToGap> run(const Progress& progress) {
+    int vertices = std::min(first_try, limit_);
+    for (int k = 0; k < runs && vertices > 0; ++k) {
+      const Progress part = progress.part(static_cast<double>(k) / runs, (k + 1.0) / runs);
+      if (const Status made = make(vertices, part); !made) {
+        return made.error();
+      }
+      vertices = next();
+    }
+    if (fine_) {
+      return std::move(*fine_);
+    }
+    ImprovedToGap& nearest = *nearest_;
+    nearest.improved.report.reached = false;
+    nearest.improved.report.why_not =
+        "some points of the cage are " + percent(nearest.gap) +
+        " of the diagonal from the model, at (" + coordinates(nearest_place_) + "); " +
+        (coarse_ >= limit_ && limit_ < most && (options_.vertices > 0 || options_.faces > 0)
+             ? "allow more vertices"
+             : "there may be a hole, a hollow or a bridge between pieces there: try a finer "
+               "--envelope-resolution, a smaller clearance, or pieces apart");
+    return std::move(nearest);
+  }
+
+private:
+  static std::string coordinates(const Vec3& p) {
+    std::array<char, 96> text{};
+    std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g", p.x(), p.y(), p.z());
+    return text.data();
+  }
+
+  Status make(int vertices, const Progress& progress) {
+    ImproveOptions options = options_;
+    options.vertices = vertices;
+    options.faces = 0; // the limit of vertices sees to them
+    // Coarser than a cage that is fine enough: from that one.
+    const TriangleView start = fine_ ? TriangleView(fine_->improved.cage) : start_;
+    Result<Improved> improved = improve(start, model_, options, progress);
+    if (!improved) {
+      return improved.error();
+    }
+    const GreatestGap gap = greatest_gap(improved->cage, bvh_, bound_width * max_gap_ * diagonal_);
+    const auto made = static_cast<int>(improved->cage.positions.size());
+    const bool stuck = made > vertices;
+    ImprovedToGap result{std::move(*improved), gap.upper / diagonal_};
+    if (result.gap <= max_gap_) {
+      // Where the cage cannot be coarser than this, that is the end of the search.
+      coarse_ = stuck ? std::max(coarse_, made - 1) : coarse_;
+      if (!fine_ || made < fine_count_) {
+        fine_count_ = made;
+        result.improved.report.reached = true;
+        result.improved.report.why_not.clear();
+        fine_ = std::move(result);
+      }
+    } else {
+      if (made > coarse_ || !nearest_) {
+        coarse_ = std::max(coarse_, std::max(made, vertices));
+        coarse_gap_ = result.gap;
+      }
+      if (!nearest_ || result.gap < nearest_->gap) {
+        nearest_ = std::move(result);
+        nearest_place_ = gap.place;
+      }
+    }
+    return success();
+  }
+
+  /// The number of vertices to try next; 0: none.
+  [[nodiscard]] int next() const {
+    if (!fine_) {
+      if (coarse_ >= limit_) {
+        return 0;
+      }
+      const double factor = std::clamp(std::pow(coarse_gap_ / max_gap_, 1 / usual_power), 1.2, 6.0);
+      return std::min(limit_, static_cast<int>(std::ceil(1.1 * factor * coarse_)));
+    }
+    if (fine_count_ <= fewest || fine_count_ - 1 <= coarse_ ||
+        fine_count_ <= close_enough * coarse_) {
+      return 0;
+    }
+    if (coarse_ == 0) {
+      const double factor = std::clamp(std::pow(fine_->gap / max_gap_, 1 / usual_power), 0.25, 0.8);
+      return std::max(fewest, static_cast<int>(factor * fine_count_));
+    }
+    return std::clamp(static_cast<int>(std::lround(std::sqrt(static_cast<double>(coarse_) *
+                                                             static_cast<double>(fine_count_)))),
+                      coarse_ + 1, fine_count_ - 1);
+  }
+
+  TriangleView start_;
+  TriangleView model_;
+  const ImproveOptions& options_;
+  double max_gap_;
+  double diagonal_;
+  TriangleBvh bvh_;
+  int limit_ = 0;
+
+  std::optional<ImprovedToGap> fine_; // the coarsest that keeps the gap
+  int fine_count_ = 0;
+  std::optional<ImprovedToGap> nearest_; // the one with the least gap, of those that do not
+  Vec3 nearest_place_ = Vec3::Zero();
+  int coarse_ = 0; // the most vertices that were too few
+  double coarse_gap_ = 0;
+};
+
+} // namespace
+
+Status can_keep_gap(double max_gap, double clearance) {
+  if (max_gap > clearance) {
+    return success();
+  }
+  return Error{ErrorCode::invalid_option, "no cage can stay within " + percent(max_gap) +
+                                              " of the diagonal and keep a clearance of " +
+                                              percent(clearance) +
+                                              ": ask for a larger gap, or a smaller clearance"};
+}
+
+Result<ImprovedToGap> improve_to_gap(TriangleView start, TriangleView model,
+                                     const ImproveOptions& options, double max_gap,
+                                     const Progress& progress) {
+  if (const Status can = can_keep_gap(max_gap, options.clearance); !can) {
+    return can.error();
+  }
+  return Search(start, model, options, max_gap).run(progress);
+}
+
+} // namespace cagewright

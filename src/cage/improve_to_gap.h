@@ -1,0 +1,37 @@
+/// \file
+/// The coarsest cage that stays near its model.
+#pragma once
+
+#include "core/progress.h"
+#include "core/result.h"
+#include "improve/improve.h"
+#include "mesh/triangle_mesh.h"
+
+namespace cagewright {
+
+struct ImprovedToGap {
+  Improved improved; ///< its report says whether the gap was kept, and why not
+  double gap = 0;    ///< no point of the cage is farther from the model, in diagonals: proved
+};
+
+/// Whether a gap is above the clearance, so that a cage may keep both. Errors: invalid_option.
+Status can_keep_gap(double max_gap, double clearance);
+
+/// Looks for the number of vertices with which improve() gives a cage all of whose points are
+/// within `max_gap` of the model, and is coarsest.
+///
+/// The distance is from every point of the cage's surface to the nearest point of the model: its
+/// greatest value is bounded by greatest_gap(), not sampled. Numbers are guessed from the gaps of
+/// the cages made so far; a cage that is fine enough is the start of the coarser ones, so that only
+/// the few steps towards finer cages cost a full run. The result has at most a twentieth more
+/// vertices than the next coarser cage that was tried and failed.
+///
+/// \param options  its vertices and faces are limits; 0: none. If they do not allow the gap, the
+///                 nearest cage within them is returned, and the report says so.
+/// \param max_gap  in diagonals of the model's box
+/// Errors: those of improve() and can_keep_gap().
+Result<ImprovedToGap> improve_to_gap(TriangleView start, TriangleView model,
+                                     const ImproveOptions& options, double max_gap,
+                                     const Progress& progress = {});
+
+} // namespace cagewright

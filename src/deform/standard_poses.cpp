@@ -1,0 +1,135 @@
+#include "deform/standard_poses.h"
+
+#include "coordinates/mean_value.h"
+#include "core/parallel.h"
+#include "mesh/measures.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace cagewright {
+namespace {
+
+constexpr double right_angle = std::numbers::pi / 2;
+constexpr std::size_t tile_points = Weights::tile_points;
+
+Vec3 bent(const PoseFrame& frame, const Vec3& p) {
+  const Vec3 offset = p - frame.center;
+  const double s = offset.dot(frame.along);
+  const double side = offset.dot(frame.toward);
+  const double on_arc = std::clamp(s, -frame.length / 2, frame.length / 2);
+  const double angle = right_angle * on_arc / frame.length;
+  const double radius = frame.length / right_angle;
+  const Vec3 tangent = std::cos(angle) * frame.along + std::sin(angle) * frame.toward;
+  const Vec3 inward = std::cos(angle) * frame.toward - std::sin(angle) * frame.along;
+  const Vec3 spine =
+      radius * (std::sin(angle) * frame.along + (1 - std::cos(angle)) * frame.toward);
+  const Vec3 across = offset - s * frame.along - side * frame.toward;
+  return frame.center + spine + (s - on_arc) * tangent + side * inward + across;
+}
+
+Vec3 twisted(const PoseFrame& frame, const Vec3& p) {
+  const Vec3 offset = p - frame.center;
+  const double t = std::clamp(offset.dot(frame.along) / frame.length, -0.5, 0.5);
+  return frame.center + Eigen::AngleAxisd(right_angle * t, frame.along) * offset;
+}
+
+struct Sums {
+  std::array<double, standard_poses.size()> sum = {};
+  std::array<double, standard_poses.size()> max = {};
+  std::size_t undefined = 0;
+};
+
+} // namespace
+
+std::string_view name_of(StandardPose pose) {
+  return pose == StandardPose::bend ? "bend" : "twist";
+}
+
+PoseFrame pose_frame(std::span<const Vec3> positions) {
+  const Box3 box = bounding_box(positions);
+  const Vec3 sizes = box.sizes();
+  Eigen::Index longest = 0;
+  Eigen::Index shortest = 0;
+  for (Eigen::Index k = 1; k < 3; ++k) {
+    longest = sizes[k] > sizes[longest] ? k : longest;
+    shortest = sizes[k] <= sizes[shortest] ? k : shortest;
+  }
+  if (shortest == longest) { // a point
+    shortest = 1;
+  }
+  PoseFrame frame;
+  frame.center = box.center();
+  frame.along = Vec3::Unit(longest);
+  frame.toward = Vec3::Unit(shortest);
+  frame.length = sizes[longest] > 0 ? sizes[longest] : 1;
+  return frame;
+}
+
+Vec3 posed(StandardPose pose, const PoseFrame& frame, const Vec3& p) {
+  return pose == StandardPose::bend ? bent(frame, p) : twisted(frame, p);
+}
+
+Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> model,
+                               const Progress& progress) {
+  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage, {.allow_open = true});
+  if (!solver) {
+    return solver.error();
+  }
+  const PoseFrame frame = pose_frame(model);
+  // Displacements of the cage's vertices: the weights then err least.
+  std::array<std::vector<Vec3>, standard_poses.size()> moves;
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    for (const Vec3& c : cage.positions) {
+      moves[k].push_back(posed(standard_poses[k], frame, c) - c);
+    }
+  }
+  const std::size_t tiles = (model.size() + tile_points - 1) / tile_points;
+  const Sums sums = parallel_reduce_ordered(
+      0, tiles, 16, Sums(),
+      [&](std::size_t first, std::size_t last) {
+        Sums found;
+        std::vector<double> weights(tile_points * solver->cage_vertices());
+        for (std::size_t t = first; t < last && !progress.cancelled(); ++t) {
+          const auto points =
+              model.subspan(t * tile_points, std::min(tile_points, model.size() - t * tile_points));
+          found.undefined +=
+              static_cast<std::size_t>(std::popcount(solver->solve(points, weights).undefined));
+          for (std::size_t k = 0; k < moves.size(); ++k) {
+            for (std::size_t i = 0; i < points.size(); ++i) {
+              Vec3 followed = points[i];
+              for (std::size_t c = 0; c < moves[k].size(); ++c) {
+                followed += weights[c * tile_points + i] * moves[k][c];
+              }
+              const double error = (followed - posed(standard_poses[k], frame, points[i])).norm();
+              found.sum[k] += error;
+              found.max[k] = std::max(found.max[k], error);
+            }
+          }
+        }
+        return found;
+      },
+      [](Sums& all, const Sums& part) {
+        all.undefined += part.undefined;
+        for (std::size_t k = 0; k < all.sum.size(); ++k) {
+          all.sum[k] += part.sum[k];
+          all.max[k] = std::max(all.max[k], part.max[k]);
+        }
+      });
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
+  PoseErrors errors;
+  errors.undefined = sums.undefined;
+  const double unit = diagonal(model);
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    const double mean = sums.sum[k] / static_cast<double>(model.size());
+    errors.of[k] = {unit > 0 ? mean / unit : 0, unit > 0 ? sums.max[k] / unit : 0};
+  }
+  return errors;
+}
+
+} // namespace cagewright

@@ -1,0 +1,252 @@
+#include "cage/budget_cage.h"
+
+#include "mesh/measures.h"
+#include "mesh/shapes.h"
+#include "mesh/topology.h"
+#include "spatial/bvh.h"
+#include "validate/greatest_gap.h"
+#include "validate/validate_cage.h"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+
+namespace cagewright {
+namespace {
+
+TriangleMesh moved(TriangleMesh mesh, double scale, const Vec3& offset) {
+  for (Vec3& p : mesh.positions) {
+    p = scale * p + offset;
+  }
+  return mesh;
+}
+
+TriangleMesh turned(TriangleMesh mesh, double degrees, const Vec3& axis) {
+  const Eigen::AngleAxisd turn(degrees * std::acos(-1) / 180, axis);
+  for (Vec3& p : mesh.positions) {
+    p = turn * p;
+  }
+  return mesh;
+}
+
+BudgetCageOptions of_vertices(int vertices) {
+  BudgetCageOptions options;
+  options.improve.vertices = vertices;
+  options.boxes.boxes.resolution = 32;
+  options.boxes.boxes.slicing.depth = 3;
+  return options;
+}
+
+bool is_valid(const BudgetCage& made, const TriangleMesh& model, bool pieces = false) {
+  const Result<ValidityReport> report =
+      validate_cage(made.cage, model, {.allow_pieces = pieces, .first_only = true});
+  return report && report->valid();
+}
+
+double clearance_of(const BudgetCage& made, const TriangleMesh& model) {
+  return mesh_distance(TriangleBvh(made.cage), TriangleBvh(model)).distance /
+         diagonal(model.positions);
+}
+
+TEST(BudgetCage, KeepsTheBudgetAndTheClearanceFromBothStarts) {
+  const TriangleMesh model = make_torus(0.3, 48, 24);
+  for (const CageStart start : {CageStart::envelope, CageStart::obb}) {
+    for (const int vertices : {24, 60}) {
+      BudgetCageOptions options = of_vertices(vertices);
+      options.start = start;
+      options.improve.clearance = 0.01;
+      const Result<BudgetCage> made = make_budget_cage(model, options);
+      ASSERT_TRUE(made) << made.error().message;
+      EXPECT_TRUE(is_valid(*made, model));
+      EXPECT_TRUE(made->report.reached);
+      EXPECT_LE(made->cage.positions.size(), static_cast<std::size_t>(vertices));
+      EXPECT_EQ(made->clearance, 0.01); // the boxes keep it too
+      EXPECT_GE(clearance_of(*made, model), 0.01 * (1 - 1e-9));
+    }
+  }
+}
+
+TEST(BudgetCage, KeepsABudgetOfFaces) {
+  const TriangleMesh model = make_icosphere(3);
+  BudgetCageOptions options = of_vertices(0);
+  options.improve.faces = 41; // a closed surface of 41 triangles there is not, of 40 there is
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_LE(made->cage.triangles.size(), 41U);
+  EXPECT_GE(made->cage.triangles.size(), 30U);
+}
+
+TEST(BudgetCage, ThatCannotBeKeptGivesAValidCageAndSaysWhy) {
+  const TriangleMesh model = make_torus(0.2, 48, 24);
+  BudgetCageOptions options = of_vertices(5); // a torus needs seven
+  options.start = CageStart::obb;             // which never fills the hole
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(is_valid(*made, model));
+  EXPECT_FALSE(made->report.reached);
+  EXPECT_FALSE(made->report.why_not.empty());
+  EXPECT_GE(made->cage.positions.size(), 7U);
+}
+
+TEST(BudgetCage, IsTheSameOnAnyNumberOfThreads) {
+  const TriangleMesh model =
+      joined(make_torus(0.25, 48, 24), moved(make_icosphere(2), 0.4, {3, 0, 0}));
+  BudgetCageOptions apart = of_vertices(50);
+  apart.boxes.boxes.pieces = Pieces::apart;
+  BudgetCageOptions near = of_vertices(0);
+  near.max_gap = 0.05;
+  for (const BudgetCageOptions& options : {of_vertices(40), apart, near}) {
+    const auto cage_with = [&](int threads) {
+      tbb::task_arena arena(threads);
+      return arena.execute([&] {
+        Result<BudgetCage> made = make_budget_cage(model, options);
+        EXPECT_TRUE(made);
+        return made ? std::move(made->cage) : TriangleMesh{};
+      });
+    };
+    const TriangleMesh one = cage_with(1);
+    const TriangleMesh many = cage_with(3);
+    EXPECT_EQ(one.positions, many.positions);
+    EXPECT_EQ(one.triangles, many.triangles);
+  }
+}
+
+TEST(BudgetCage, StopsWhereverItIsAskedTo) {
+  const TriangleMesh model =
+      joined(make_torus(0.25, 32, 16), moved(make_icosphere(2), 0.4, {3, 0, 0}));
+  for (const double gap : {0.0, 0.03}) {
+    for (const double when : {0.0, 0.05, 0.2, 0.5, 0.9}) {
+      std::stop_source stop;
+      const Progress progress(stop.get_token(), [&](double fraction, std::string_view) {
+        if (fraction >= when) {
+          stop.request_stop();
+        }
+      });
+      BudgetCageOptions options = of_vertices(gap > 0 ? 0 : 40);
+      options.max_gap = gap;
+      options.boxes.boxes.pieces = when < 0.3 ? Pieces::apart : Pieces::together;
+      const Result<BudgetCage> made = make_budget_cage(model, options, progress);
+      if (made) { // it was through before it was told so
+        EXPECT_TRUE(is_valid(*made, model, true));
+      } else {
+        EXPECT_EQ(made.error().code, ErrorCode::cancelled) << made.error().message;
+      }
+    }
+  }
+}
+
+TEST(BudgetCage, KeepsTheGapWithAFewVerticesMoreThanItMust) {
+  const TriangleMesh model = make_torus(0.3, 48, 24);
+  std::size_t last = 0;
+  for (const double gap : {0.08, 0.04, 0.02}) {
+    BudgetCageOptions options = of_vertices(0);
+    options.max_gap = gap;
+    const Result<BudgetCage> made = make_budget_cage(model, options);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_TRUE(made->report.reached) << made->report.why_not;
+    EXPECT_TRUE(is_valid(*made, model));
+    const double unit = diagonal(model.positions);
+    const GreatestGap found = greatest_gap(made->cage, TriangleBvh(model), 1e-4 * unit);
+    EXPECT_LE(found.lower, gap * unit);
+    ASSERT_TRUE(made->gap);
+    EXPECT_LE(*made->gap, gap);
+    EXPECT_GE(*made->gap, found.lower / unit * (1 - 1e-9));
+    EXPECT_GT(made->cage.positions.size(), last); // coarser where it may be
+    last = made->cage.positions.size();
+  }
+}
+
+TEST(BudgetCage, SaysWhereAGapCannotBeKept) {
+  const TriangleMesh model = make_torus(0.3, 48, 24);
+  BudgetCageOptions options = of_vertices(20);
+  options.max_gap = 0.004;
+  const Result<BudgetCage> few = make_budget_cage(model, options);
+  ASSERT_TRUE(few) << few.error().message;
+  EXPECT_TRUE(is_valid(*few, model));
+  EXPECT_FALSE(few->report.reached);
+  EXPECT_NE(few->report.why_not.find("more vertices"), std::string::npos) << few->report.why_not;
+  EXPECT_LE(few->cage.positions.size(), 20U);
+
+  options.max_gap = options.improve.clearance;
+  const Result<BudgetCage> none = make_budget_cage(model, options);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::invalid_option);
+  EXPECT_NE(none.error().message.find("clearance"), std::string::npos);
+}
+
+TEST(BudgetCage, OfPiecesThatAreApartSharesTheBudgetByArea) {
+  const TriangleMesh model = joined(make_icosphere(3), moved(make_icosphere(2), 0.5, {4, 0, 0}));
+  BudgetCageOptions options = of_vertices(60);
+  const Result<BudgetCage> together = make_budget_cage(model, options);
+  ASSERT_TRUE(together) << together.error().message;
+  EXPECT_EQ(topology(TriangleView(together->cage)).components, 1U);
+  options.boxes.boxes.pieces = Pieces::apart;
+  for (const CageStart start : {CageStart::envelope, CageStart::obb}) {
+    options.start = start;
+    const Result<BudgetCage> apart = make_budget_cage(model, options);
+    ASSERT_TRUE(apart) << apart.error().message;
+    EXPECT_EQ(topology(TriangleView(apart->cage)).components, 2U);
+    EXPECT_EQ(apart->pieces, 2);
+    EXPECT_EQ(apart->joined, 0);
+    EXPECT_LE(apart->cage.positions.size(), 60U);
+    EXPECT_TRUE(is_valid(*apart, model, true));
+    EXPECT_GE(clearance_of(*apart, model), options.improve.clearance * (1 - 1e-9));
+    const auto small = std::count_if(apart->cage.positions.begin(), apart->cage.positions.end(),
+                                     [](const Vec3& p) { return p.x() > 2; });
+    EXPECT_GE(small, 8); // a fifth of the area, and enough for a box
+    EXPECT_LE(small, 24);
+  }
+}
+
+TEST(BudgetCage, OfPiecesWithinOneAnotherIsOne) {
+  const TriangleMesh model = joined(make_icosphere(3), moved(make_icosphere(2), 0.3, {0, 0, 0}));
+  BudgetCageOptions options = of_vertices(40);
+  options.boxes.boxes.pieces = Pieces::apart;
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->pieces, 1);
+  EXPECT_TRUE(is_valid(*made, model));
+}
+
+TEST(BudgetCage, OfLinkedPiecesDoesNotCrossItself) {
+  // Two links of a chain: whether their cages meet is found out by making them.
+  const TriangleMesh link = make_torus(0.12, 48, 16);
+  const TriangleMesh model = joined(link, moved(turned(link, 90, Vec3::UnitX()), 1, Vec3(1, 0, 0)));
+  BudgetCageOptions options = of_vertices(16);
+  options.boxes.boxes.pieces = Pieces::apart;
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(is_valid(*made, model, true));
+  EXPECT_EQ(static_cast<std::size_t>(made->pieces), topology(TriangleView(made->cage)).components);
+  EXPECT_EQ(made->pieces + made->joined, 2);
+}
+
+TEST(BudgetCage, OfMorePiecesThanTheBudgetHasRoomForJoinsThem) {
+  TriangleMesh model = make_cube();
+  for (int i = 1; i < 6; ++i) {
+    model = joined(model, moved(make_icosphere(1), 0.3, Vec3(3.0 * i, 0, 0)));
+  }
+  BudgetCageOptions options = of_vertices(20); // for two pieces at most
+  options.boxes.boxes.pieces = Pieces::apart;
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(is_valid(*made, model, true));
+  EXPECT_LE(made->pieces, 2);
+  EXPECT_EQ(made->pieces + made->joined, 6);
+}
+
+TEST(BudgetCage, RefusesDensitiesOfAnotherModel) {
+  const std::vector<double> density(7, 1.0);
+  for (const Pieces pieces : {Pieces::together, Pieces::apart}) {
+    BudgetCageOptions options = of_vertices(20);
+    options.improve.density = density;
+    options.boxes.boxes.pieces = pieces;
+    const Result<BudgetCage> made = make_budget_cage(make_icosphere(2), options);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::invalid_option);
+  }
+}
+
+} // namespace
+} // namespace cagewright
