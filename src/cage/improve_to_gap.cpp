@@ -18,8 +18,8 @@ namespace {
 constexpr int first_try = 100;
 constexpr int fewest = 4;
 constexpr int most = 20000;
-constexpr int runs = 12;
-constexpr double close_enough = 1.05; // of two numbers of vertices: neither is worth another run
+constexpr int runs = 8;
+constexpr double close_enough = 1.06; // of two numbers of vertices: neither is worth another run
 constexpr double bound_width = 0.002; // of the gap: how well it is bounded
 constexpr double usual_power = 0.8;   // gaps fall about with this power of the vertices
 
@@ -79,8 +79,9 @@ private:
     ImproveOptions options = options_;
     options.vertices = vertices;
     options.faces = 0; // the limit of vertices sees to them
-    // Coarser than a cage that is fine enough: from that one.
+    // Coarser than a cage that is fine enough: from that one, which is in good shape already.
     const TriangleView start = fine_ ? TriangleView(fine_->improved.cage) : start_;
+    options.rounds = fine_ ? std::min(options.rounds, 1) : options.rounds;
     Result<Improved> improved = improve(start, model_, options, progress);
     if (!improved) {
       return improved.error();
@@ -128,9 +129,13 @@ private:
       const double factor = std::clamp(std::pow(fine_->gap / max_gap_, 1 / usual_power), 0.25, 0.8);
       return std::max(fewest, static_cast<int>(factor * fine_count_));
     }
-    return std::clamp(static_cast<int>(std::lround(std::sqrt(static_cast<double>(coarse_) *
-                                                             static_cast<double>(fine_count_)))),
-                      coarse_ + 1, fine_count_ - 1);
+    // Between the two, as their gaps say.
+    const double towards =
+        std::log(coarse_gap_ / max_gap_) / std::log(coarse_gap_ / std::min(fine_->gap, max_gap_));
+    const double guess = coarse_ * std::pow(static_cast<double>(fine_count_) / coarse_, towards);
+    return std::clamp(static_cast<int>(std::lround(guess)),
+                      coarse_ + std::max(1, (fine_count_ - coarse_) / 4),
+                      fine_count_ - std::max(1, (fine_count_ - coarse_) / 4));
   }
 
   TriangleView start_;
@@ -146,7 +151,7 @@ private:
   std::optional<ImprovedToGap> nearest_; // the one with the least gap, of those that do not
   Vec3 nearest_place_ = Vec3::Zero();
   int coarse_ = 0; // the most vertices that were too few
-  double coarse_gap_ = 0;
+  double coarse_gap_ = 1;
 };
 
 } // namespace

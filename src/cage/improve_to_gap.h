@@ -23,8 +23,8 @@ Status can_keep_gap(double max_gap, double clearance);
 /// The distance is from every point of the cage's surface to the nearest point of the model: its
 /// greatest value is bounded by greatest_gap(), not sampled. Numbers are guessed from the gaps of
 /// the cages made so far; a cage that is fine enough is the start of the coarser ones, so that only
-/// the few steps towards finer cages cost a full run. The result has at most a twentieth more
-/// vertices than the next coarser cage that was tried and failed.
+/// the few steps towards finer cages cost a full run. Eight runs at most; fewer when the next
+/// coarser cage that was tried and failed has nearly as many vertices (a sixteenth fewer).
 ///
 /// \param options  its vertices and faces are limits; 0: none. If they do not allow the gap, the
 ///                 nearest cage within them is returned, and the report says so.
