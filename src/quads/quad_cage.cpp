@@ -1,0 +1,76 @@
+#include "quads/quad_cage.h"
+
+#include <algorithm>
+
+namespace cagewright {
+
+FaceParts::FaceParts(const CageFace& face, Of which) {
+  if (face.is_quad()) {
+    triangles = {Triangle{face[0], face[1], face[2]}, Triangle{face[2], face[3], face[0]},
+                 Triangle{face[1], face[2], face[3]}, Triangle{face[3], face[0], face[1]}};
+    count = face.tentative && which == Of::valid ? 2 : 4;
+  } else {
+    triangles[0] = {face[0], face[1], face[2]};
+    count = 1;
+  }
+}
+
+QuadCage::QuadCage(TriangleView mesh)
+    : positions_(mesh.positions.begin(), mesh.positions.end()), around_(mesh.positions.size()),
+      on_border_(mesh.positions.size(), 0) {
+  std::vector<CageFace> faces;
+  for (const Triangle& t : mesh.triangles) {
+    faces.push_back(CageFace::triangle(t[0], t[1], t[2]));
+  }
+  replace({}, faces);
+  for (const Triangle& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const Index a = t[i];
+      const Index b = t[(i + 1) % 3];
+      if (face_left_of(b, a) == no_index) {
+        on_border_[a] = on_border_[b] = 1;
+        has_border_ = true;
+      }
+    }
+  }
+}
+
+Index QuadCage::face_left_of(Index a, Index b) const {
+  for (const Index f : around_[a]) {
+    const CageFace& face = faces_[f];
+    for (int i = 0; i < face.size; ++i) {
+      if (face[i] == a && face[i + 1] == b) {
+        return f;
+      }
+    }
+  }
+  return no_index;
+}
+
+void QuadCage::replace(std::span<const Index> removed, std::span<const CageFace> added) {
+  for (const Index f : removed) {
+    for (const Index v : faces_[f].span()) {
+      std::erase(around_[v], f);
+    }
+    faces_[f].size = 0;
+  }
+  for (const CageFace& face : added) {
+    for (const Index v : face.span()) {
+      around_[v].push_back(face_end());
+    }
+    faces_.push_back(face);
+  }
+}
+
+PolygonMesh QuadCage::to_polygons() const {
+  PolygonMesh mesh;
+  mesh.positions = positions_;
+  for (const CageFace& face : faces_) {
+    if (face.size != 0) {
+      mesh.add_face(face.span());
+    }
+  }
+  return mesh;
+}
+
+} // namespace cagewright

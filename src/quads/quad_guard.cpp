@@ -1,0 +1,212 @@
+#include "quads/quad_guard.h"
+
+#include "exact/predicates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cagewright {
+namespace {
+
+Corners at(std::span<const Vec3> positions, const Triangle& t) {
+  return {positions[t[0]], positions[t[1]], positions[t[2]]};
+}
+
+Box3 box_of(const Corners& t) {
+  Box3 box(t[0]);
+  box.extend(t[1]);
+  box.extend(t[2]);
+  return box;
+}
+
+bool has_side(const CageFace& face, Index a, Index b) {
+  for (int i = 0; i < face.size; ++i) {
+    if (face[i] == a && face[i + 1] == b) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Two faces may have one corner or one side in common, which they run along opposite ways.
+bool fit_together(const CageFace& s, const CageFace& t) {
+  std::array<Index, 4> shared{};
+  int count = 0;
+  for (const Index v : s.span()) {
+    if (t.has(v)) {
+      shared[count++] = v;
+    }
+  }
+  return count < 2 ||
+         (count == 2 && ((has_side(s, shared[0], shared[1]) && has_side(t, shared[1], shared[0])) ||
+                         (has_side(s, shared[1], shared[0]) && has_side(t, shared[0], shared[1]))));
+}
+
+bool cross(std::span<const Vec3> positions, const CageFace& s, const CageFace& t) {
+  if (!fit_together(s, t)) {
+    return true;
+  }
+  for (const Triangle& p : FaceParts(s)) {
+    const Corners at_p = at(positions, p);
+    const Box3 box = box_of(at_p);
+    for (const Triangle& q : FaceParts(t)) {
+      const Corners at_q = at(positions, q);
+      if (box.intersects(box_of(at_q)) && faces_cross(p, at_p, q, at_q)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+} // namespace
+
+Box3 box_of(std::span<const Vec3> positions, const CageFace& face) {
+  Box3 box;
+  for (const Index v : face.span()) {
+    box.extend(positions[v]);
+  }
+  return box;
+}
+
+std::vector<Box3> face_boxes(const QuadCage& cage, std::span<const Vec3> positions) {
+  std::vector<Box3> boxes;
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    boxes.push_back(box_of(positions, cage.face(f)));
+  }
+  return boxes;
+}
+
+bool QuadGuard::is_clear(std::span<const Vec3> positions, const CageFace& face) const {
+  const FaceParts parts(face);
+  for (const Triangle& part : parts) {
+    if (model_->tree.too_near(at(positions, part), clearance_)) {
+      return false;
+    }
+  }
+  if (parts.count < 4) {
+    return true;
+  }
+  const Box3 box = cagewright::box_of(positions, face);
+  for (const ModelSurface::Part& piece : model_->parts) {
+    if (box.contains(piece.box)) {
+      double angle = 0; // of the tetrahedron between the two cuttings
+      for (int k = 0; k < 4; ++k) {
+        angle += (k < 2 ? 1 : -1) * solid_angle(piece.point, at(positions, parts.triangles[k]));
+      }
+      if (std::abs(angle) > 2 * std::numbers::pi) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool QuadGuard::is_crossed(const QuadCage& cage, std::span<const Vec3> positions,
+                           std::span<const Box3> boxes, const CageFace& face, Index itself,
+                           std::span<const Index> without, std::span<const CageFace> with) const {
+  for (const Triangle& part : FaceParts(face)) {
+    if (is_degenerate(positions[part[0]], positions[part[1]], positions[part[2]])) {
+      return true;
+    }
+  }
+  const Box3 box = cagewright::box_of(positions, face);
+  for (Index f = 0; f < boxes.size(); ++f) {
+    if (f != itself && boxes[f].intersects(box) && cage.has_face(f) &&
+        std::find(without.begin(), without.end(), f) == without.end() &&
+        cross(positions, face, cage.face(f))) {
+      return true;
+    }
+  }
+  return std::any_of(with.begin(), with.end(),
+                     [&](const CageFace& other) { return cross(positions, face, other); });
+}
+
+bool QuadGuard::loses_a_part(const QuadCage& cage, std::span<const Index> removed,
+                             std::span<const CageFace> added) const {
+  Box3 box;
+  for (const Index f : removed) {
+    box.extend(cagewright::box_of(cage.positions(), cage.face(f)));
+  }
+  const auto angle_of = [&](const Vec3& p, const CageFace& face) {
+    const FaceParts parts(face);
+    double angle = solid_angle(p, at(cage.positions(), parts.triangles[0]));
+    if (face.is_quad()) {
+      angle += solid_angle(p, at(cage.positions(), parts.triangles[1]));
+    }
+    return angle;
+  };
+  for (const ModelSurface::Part& part : model_->parts) {
+    if (!box.contains(part.box)) {
+      continue;
+    }
+    double angle = 0;
+    for (const Index f : removed) {
+      angle += angle_of(part.point, cage.face(f));
+    }
+    for (const CageFace& face : added) {
+      angle -= angle_of(part.point, face);
+    }
+    if (std::abs(angle) > 2 * std::numbers::pi) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool QuadGuard::is_sound(const QuadCage& cage, std::span<const Vec3> positions,
+                         std::span<const Box3> boxes, CageFace quad, Index itself) const {
+  quad.tentative = false;
+  return shape_of(corners_of(positions, quad)).within(limits_) &&
+         !is_crossed(cage, positions, boxes, quad, itself) && is_clear(positions, quad);
+}
+
+bool QuadGuard::allows(const QuadCage& cage, std::span<const Box3> boxes,
+                       std::span<const Index> removed, std::span<CageFace> added,
+                       bool tentative) const {
+  const std::vector<Vec3>& positions = cage.positions();
+  if (cage.has_border()) {
+    for (const CageFace& face : added) {
+      // What joins two vertices of the mirror plane would coincide with its mirror image.
+      for (int i = 0; i < face.size; ++i) {
+        for (int j = i + 1; j < face.size; ++j) {
+          const Index a = face[i];
+          const Index b = face[j];
+          const bool is_border =
+              (cage.face_left_of(a, b) == no_index) != (cage.face_left_of(b, a) == no_index);
+          if (cage.on_border(a) && cage.on_border(b) && !is_border) {
+            return false;
+          }
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const auto fits = [&](const CageFace& face) {
+      const bool is_firm_quad = face.is_quad() && !face.tentative;
+      return (!is_firm_quad || shape_of(corners_of(positions, face)).within(limits_)) &&
+             !is_crossed(cage, positions, boxes, face, no_index, removed, added.first(i)) &&
+             is_clear(positions, face);
+    };
+    CageFace& face = added[i];
+    face.tentative = false;
+    if (fits(face)) {
+      continue;
+    }
+    if (!tentative || !face.is_quad()) {
+      return false;
+    }
+    face.tentative = true;
+    if (fits(face)) {
+      continue;
+    }
+    face = face.turned(1);
+    if (!fits(face)) {
+      return false;
+    }
+  }
+  return !loses_a_part(cage, removed, added);
+}
+
+} // namespace cagewright

@@ -1,0 +1,64 @@
+/// \file
+/// The invariant: valid under every choice of diagonals, before and after every step.
+#pragma once
+
+#include "improve/guard.h"
+#include "quads/quad_cage.h"
+#include "quads/quad_shape.h"
+
+#include <span>
+#include <vector>
+
+namespace cagewright {
+
+/// Decides whether faces may stand in a cage. Every part of every quad counts as a face of its own,
+/// and the tetrahedron between a quad's two cuttings must not hold a part of the model.
+class QuadGuard {
+public:
+  /// \param clearance least distance to the model, in its units
+  QuadGuard(const ModelSurface& model, double clearance, const QuadLimits& limits)
+      : model_(&model), clearance_(clearance), limits_(limits) {}
+
+  [[nodiscard]] const ModelSurface& model() const { return *model_; }
+  [[nodiscard]] double clearance() const { return clearance_; }
+  [[nodiscard]] const QuadLimits& limits() const { return limits_; }
+
+  /// True when no part of the face comes nearer to the model than the clearance.
+  [[nodiscard]] bool is_clear(std::span<const Vec3> positions, const CageFace& face) const;
+
+  /// True when the face crosses another of the cage, or one of `with`, or meets one along a
+  /// diagonal, or has no area. The faces `without` and the face `itself` are not looked at.
+  [[nodiscard]] bool is_crossed(const QuadCage& cage, std::span<const Vec3> positions,
+                                std::span<const Box3> boxes, const CageFace& face, Index itself,
+                                std::span<const Index> without = {},
+                                std::span<const CageFace> with = {}) const;
+
+  /// True when some part of the model lies between the old faces and the new ones, which have the
+  /// same border.
+  [[nodiscard]] bool loses_a_part(const QuadCage& cage, std::span<const Index> removed,
+                                  std::span<const CageFace> added) const;
+
+  /// True when the exchange leaves the cage valid. Quads that would be valid along one diagonal
+  /// only are made tentative if that is allowed. Border vertices of a half cage are joined by
+  /// its border alone.
+  [[nodiscard]] bool allows(const QuadCage& cage, std::span<const Box3> boxes,
+                            std::span<const Index> removed, std::span<CageFace> added,
+                            bool tentative) const;
+
+  /// True when the quad is within the limits, clear of the model and crosses nothing, along either
+  /// diagonal.
+  [[nodiscard]] bool is_sound(const QuadCage& cage, std::span<const Vec3> positions,
+                              std::span<const Box3> boxes, CageFace quad, Index itself) const;
+
+private:
+  const ModelSurface* model_;
+  double clearance_;
+  QuadLimits limits_;
+};
+
+Box3 box_of(std::span<const Vec3> positions, const CageFace& face);
+
+/// By number; empty for faces that are not there.
+std::vector<Box3> face_boxes(const QuadCage& cage, std::span<const Vec3> positions);
+
+} // namespace cagewright

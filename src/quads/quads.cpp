@@ -1,0 +1,239 @@
+#include "quads/quads.h"
+
+#include "mesh/measures.h"
+#include "quads/matching.h"
+#include "quads/pairing.h"
+#include "quads/relax_quads.h"
+#include "quads/retile.h"
+
+#include <algorithm>
+#include <map>
+
+namespace cagewright {
+namespace {
+
+/// The model with a triangle without extent for every vertex that no triangle uses: it must be
+/// inside too.
+TriangleMesh with_strays(TriangleView model) {
+  TriangleMesh result{{model.positions.begin(), model.positions.end()},
+                      {model.triangles.begin(), model.triangles.end()}};
+  std::vector<bool> used(model.positions.size(), false);
+  for (const Triangle& t : model.triangles) {
+    used[t[0]] = used[t[1]] = used[t[2]] = true;
+  }
+  for (Index v = 0; v < used.size(); ++v) {
+    if (!used[v]) {
+      result.triangles.push_back({v, v, v});
+    }
+  }
+  return result;
+}
+
+ObjectiveWeights weights_for(TriangleView cage, const QuadOptions& options) {
+  ObjectiveWeights weights;
+  weights.square = options.square;
+  weights.shape = options.shape;
+  weights.typical_area = surface_area(cage) / static_cast<double>(cage.triangles.size());
+  return weights;
+}
+
+TriangleMesh cut(const QuadCage& cage) {
+  TriangleMesh mesh{cage.positions(), {}};
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    if (cage.has_face(f)) {
+      const FaceParts parts(cage.face(f));
+      for (int k = 0; k < std::min(2, parts.count); ++k) {
+        mesh.triangles.push_back(parts.triangles[k]);
+      }
+    }
+  }
+  return mesh;
+}
+
+bool border_is_in_plane(const QuadCage& cage) {
+  for (Index v = 0; v < cage.vertex_end(); ++v) {
+    if (cage.on_border(v) && cage.positions()[v].x() != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Each quad begins at a corner of its shorter diagonal.
+void turn_quads(QuadCage& cage) {
+  std::vector<Index> removed;
+  std::vector<CageFace> added;
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    if (cage.has_face(f)) {
+      removed.push_back(f);
+      added.push_back(cage.face(f));
+      CageFace& face = added.back();
+      const auto length = [&](int i) {
+        return (cage.positions()[face[i]] - cage.positions()[face[i + 2]]).squaredNorm();
+      };
+      if (face.is_quad() && length(1) < length(0)) {
+        face = CageFace::quad(face[1], face[2], face[3], face[0]);
+      }
+    }
+  }
+  cage.replace(removed, added);
+}
+
+/// Quads beyond the limits become two triangles each.
+void split_unfit(QuadCage& cage, const QuadLimits& limits) {
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    const CageFace face = cage.face(f);
+    if (face.is_quad()) {
+      const QuadCorners q = corners_of(cage.positions(), face);
+      if (face.tentative || !shape_of(q).within(limits)) {
+        const bool second =
+            !face.tentative && (q[1] - q[3]).squaredNorm() < (q[0] - q[2]).squaredNorm();
+        const int k = second ? 1 : 0;
+        cage.replace(std::array{f},
+                     std::array{CageFace::triangle(face[k], face[k + 1], face[k + 2]),
+                                CageFace::triangle(face[k], face[k + 2], face[k + 3])});
+      }
+    }
+  }
+}
+
+/// Across quads from side to opposite side, until a side comes again or a face is no quad.
+std::size_t closed_strips(const PolygonMesh& mesh) {
+  using Side = std::array<Index, 2>;
+  std::map<Side, std::array<Index, 2>> left_of; // face, its corner that the side begins at
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const Index> face = mesh.face(f);
+    for (Index i = 0; i < face.size(); ++i) {
+      left_of[{face[i], face[(i + 1) % face.size()]}] = {f, i};
+    }
+  }
+  std::size_t closed = 0;
+  std::map<Side, bool> seen;
+  for (const auto& [start, place] : left_of) {
+    if (seen[start]) {
+      continue;
+    }
+    Side side = start;
+    for (;;) {
+      seen[side] = true;
+      const auto at = left_of.find(side);
+      if (at == left_of.end() || mesh.face(at->second[0]).size() != 4) {
+        break;
+      }
+      const std::span<const Index> face = mesh.face(at->second[0]);
+      const Index i = at->second[1];
+      const Side opposite{face[(i + 2) % 4], face[(i + 3) % 4]};
+      side = {opposite[1], opposite[0]};
+      if (side == start) {
+        ++closed;
+        break;
+      }
+      if (seen[side]) {
+        break;
+      }
+    }
+  }
+  return closed / 2; // each was walked both ways
+}
+
+} // namespace
+
+QuadReport report_of(const PolygonMesh& mesh) {
+  QuadReport report;
+  report.min_angle_degrees = 360;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const Index> v = mesh.face(f);
+    if (v.size() != 4) {
+      report.triangles += v.size() == 3 ? 1 : 0;
+      continue;
+    }
+    ++report.quads;
+    const QuadShape shape = shape_of(
+        {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], mesh.positions[v[3]]});
+    report.max_bend_degrees = std::max(report.max_bend_degrees, shape.bend_degrees);
+    report.max_angle_degrees = std::max(report.max_angle_degrees, shape.max_angle_degrees);
+    report.min_angle_degrees = std::min(report.min_angle_degrees, shape.min_angle_degrees);
+  }
+  const std::size_t faces = mesh.face_count();
+  report.share = faces > 0 ? static_cast<double>(report.quads) / static_cast<double>(faces) : 0;
+  report.rings = closed_strips(mesh);
+  return report;
+}
+
+Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
+                                  const QuadOptions& options, const Progress& progress) {
+  if (start.triangles.empty()) {
+    return Error{ErrorCode::invalid_cage, "the cage to make quads of has no faces"};
+  }
+  if (model.positions.empty()) {
+    return Error{ErrorCode::unfit_model, "the model has no vertices"};
+  }
+  if (!(options.clearance > 0 && options.clearance < 1) || !(options.room >= 0)) {
+    return Error{ErrorCode::invalid_option, "an option of the quads is out of its range"};
+  }
+  QuadCage cage(start);
+  if (!border_is_in_plane(cage)) {
+    return Error{ErrorCode::invalid_cage, "the cage to make quads of is open"};
+  }
+  const TriangleMesh all = with_strays(model);
+  const ModelSurface surface(all, options.diagonal);
+  const double clearance = options.clearance * surface.diagonal;
+  const Objective objective(surface, weights_for(start, options));
+  RelaxQuadsOptions make_room;
+  make_room.steps = 3;
+  make_room.keep = options.clearance + options.room;
+  const QuadGuard strict(surface, clearance, options.limits);
+  relax_quads(cage, strict, objective, make_room, progress.part(0, 0.2));
+  const DirectionField field(cut(cage));
+
+  constexpr int rounds = 6;
+  for (int round = 0; round < rounds; ++round) {
+    const double slack = std::max(0.0, 1 - round / (rounds - 2.0));
+    QuadLimits limits = options.limits;
+    limits.max_bend_degrees += slack * 35;
+    limits.max_angle_degrees += slack * (172 - limits.max_angle_degrees);
+    const QuadGuard guard(surface, clearance, limits);
+    Taste taste;
+    taste.wishes.limits = limits;
+    taste.wishes.beyond = round < rounds - 1 ? 60 : 0;
+    if (round == rounds - 1)
+      split_unfit(cage, limits);
+    pair_triangles(cage, guard, field, taste);
+    retile(cage, guard, field, taste, progress.part(0.2, 0.4));
+    RelaxQuadsOptions settle;
+    settle.keep = options.clearance + slack * options.room;
+    settle.steps = round == rounds - 1 ? 8 : 3;
+    relax_quads(cage, guard, objective, settle, progress.part(0.4, 0.6));
+  }
+  split_unfit(cage, options.limits);
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
+  turn_quads(cage);
+  Quadrangulated result;
+  result.cage = cage.to_polygons();
+  result.report = report_of(result.cage);
+  return result;
+}
+
+PolygonMesh pair_coplanar(TriangleView mesh) {
+  QuadCage cage(mesh);
+  FaceWishes wishes;
+  wishes.limits = {.max_bend_degrees = 0.1, .min_angle_degrees = 5, .max_angle_degrees = 175};
+  std::vector<PossiblePair> possible;
+  std::vector<CageFace> quads;
+  for (const PairOfTriangles& pair : neighboring_triangles(cage)) {
+    const double defect = face_defect(cage.positions(), pair.quad, wishes);
+    if (defect < unfit) {
+      possible.push_back({pair.left, pair.right, defect});
+      quads.push_back(pair.quad);
+    }
+  }
+  for (const std::size_t i : most_pairs(cage.face_end(), possible)) {
+    cage.replace(std::array{possible[i].first, possible[i].second}, std::array{quads[i]});
+  }
+  turn_quads(cage);
+  return cage.to_polygons();
+}
+
+} // namespace cagewright

@@ -1,0 +1,63 @@
+/// \file
+/// A cage of triangles made into one of quads.
+#pragma once
+
+#include "core/progress.h"
+#include "core/result.h"
+#include "mesh/polygon_mesh.h"
+#include "quads/quad_shape.h"
+
+namespace cagewright {
+
+struct QuadOptions {
+  QuadLimits limits = {};
+  /// Least distance from every part of every face to the model, in diagonals of the model's box.
+  /// The cage to start from must keep it.
+  double clearance = 0.002;
+  /// How far the cage moves off the model, in diagonals, while its faces are being paired.
+  double room = 0.01;
+  /// What lengths are fractions of. 0: the diagonal of the model's box.
+  double diagonal = 0;
+  double square = 40;  ///< weight of large gaps: see ObjectiveWeights
+  double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
+};
+
+struct QuadReport {
+  std::size_t quads = 0;
+  std::size_t triangles = 0;
+  double share = 0;             ///< of quads among the faces
+  double max_bend_degrees = 0;  ///< of all quads: see QuadLimits
+  double max_angle_degrees = 0; ///< at a corner of any quad
+  double min_angle_degrees = 0;
+  /// Strips of quads, each the neighbour of the next across opposite sides, that close on
+  /// themselves.
+  std::size_t rings = 0;
+};
+
+struct Quadrangulated {
+  /// Triangles and quads. Cut along any choice of diagonals it is valid, and keeps the clearance.
+  /// The first diagonal of each quad is the one along which triangulate() cuts it.
+  PolygonMesh cage;
+  QuadReport report;
+};
+
+/// Makes a quad-dominant cage of a cage of triangles, with the same vertices or fewer, moved.
+///
+/// The cage is valid and keeps the clearance: so does the result, because no change is made
+/// that was not checked. It may be open if its border lies in the plane x = 0: then it is one half
+/// of a symmetric cage, and the border stays in the plane.
+///
+/// Errors: invalid_option, invalid_cage (no faces, or a border off the plane x = 0), unfit_model
+/// (no vertices), cancelled. The same result on any number of threads.
+Result<Quadrangulated> make_quads(TriangleView cage, TriangleView model,
+                                  const QuadOptions& options = {}, const Progress& progress = {});
+
+/// The same vertices and surface, with quads in place of pairs of triangles in one plane, if
+/// they are convex: as many as there can be, the squarest first. Whether a quad meets another face
+/// along its other diagonal has to be checked.
+PolygonMesh pair_coplanar(TriangleView mesh);
+
+/// Measures the quads of a mesh.
+QuadReport report_of(const PolygonMesh& mesh);
+
+} // namespace cagewright

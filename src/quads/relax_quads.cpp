@@ -1,0 +1,557 @@
+#include "quads/relax_quads.h"
+
+#include "core/parallel.h"
+#include "improve/block_program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace cagewright {
+namespace {
+
+// Constraints ask for a little more than the clearance: what a step errs by, being linear.
+constexpr double margin = 1.03;
+// Each part is looked at in so many small triangles along a side.
+constexpr int cells = 3;
+
+using Positions = std::vector<Vec3>;
+
+/// What a part of a face should look like: f(x) = linear x + x^2 with
+/// x = (sum of weighted squared sides) / (scale * area) - 1.
+struct PartShape {
+  std::array<double, 3> side{}; ///< weight of the side opposite to corner k
+  double scale = 1;
+  double linear = 0;
+};
+
+constexpr PartShape equilateral{{1, 1, 1}, 4 * std::numbers::sqrt3, 0};
+// A quad's part has its corner in the middle: the sides there are equally long and square.
+constexpr PartShape square_corner{{1, 0, 1}, 4, 0.5};
+
+double shape_excess(const Corners& t, const PartShape& shape) {
+  double sides = 0;
+  for (int k = 0; k < 3; ++k) {
+    sides += shape.side[k] * (t[(k + 2) % 3] - t[(k + 1) % 3]).squaredNorm();
+  }
+  constexpr double most = 100;
+  const double scaled = shape.scale * triangle_area(t);
+  return scaled * (most + 1) > sides ? std::max(0.0, sides / scaled - 1) : most;
+}
+
+/// Six times the volume between a quad's two cuttings, signed.
+double six_volumes(const QuadCorners& q) {
+  return (q[1] - q[0]).dot((q[2] - q[0]).cross(q[3] - q[0]));
+}
+
+double quad_area(const QuadCorners& q) {
+  return (q[2] - q[0]).cross(q[3] - q[1]).norm() / 2;
+}
+
+class Relaxation {
+public:
+  Relaxation(QuadCage& cage, const QuadGuard& guard, const Objective& objective,
+             const RelaxQuadsOptions& options)
+      : cage_(cage), guard_(guard), objective_(objective), options_(options),
+        at_(cage.positions()) {
+    for (Index v = 0; v < cage.vertex_end(); ++v) {
+      number_.push_back(cage.around(v).empty() ? no_index : static_cast<Index>(living_.size()));
+      if (!cage.around(v).empty()) {
+        living_.push_back(v);
+        center_ += at_[v];
+      }
+    }
+    center_ /= static_cast<double>(std::max<std::size_t>(1, living_.size()));
+    if (cage.has_border()) {
+      center_.x() = 0; // from the mirror plane the other half's volume is not missed
+    }
+    for (Index f = 0; f < cage.face_end(); ++f) {
+      if (cage.has_face(f)) {
+        faces_.push_back(f);
+      }
+    }
+    square_weight_ = options.square * objective.shape_weight();
+    flat_weight_ = options.flat * objective.shape_weight();
+    keep_ = margin * std::max(options.keep * objective.diagonal(), guard.clearance());
+  }
+
+  double run(const Progress& progress) {
+    double reach = options_.first_step * objective_.diagonal();
+    double value = total(at_);
+    for (int step = 0; step < options_.steps && !progress.cancelled(); ++step) {
+      progress(static_cast<double>(step) / options_.steps, "relax quads");
+      const Positions goal = moved(at_, reach, true);
+      // The constraints curve: what the step has overshot is taken back by a step of its own.
+      const Positions next = valid_part(moved(goal, reach / 4, false));
+      const double lower = total(next);
+      // What is to be kept away further than before may cost something.
+      const bool makes_room = keep_ > 2 * guard_.clearance();
+      if (lower < value || makes_room) {
+        const double gain = value - lower;
+        const double promised = value - total(goal);
+        at_ = next;
+        cage_.set_positions(at_);
+        make_sound();
+        value = lower;
+        if (gain < options_.least_gain * value && gain > promised / 4 && !makes_room) {
+          break;
+        }
+        reach *= gain > promised / 2 ? 1.3 : gain < promised / 4 ? 0.5 : 1;
+      } else {
+        reach *= 0.4;
+      }
+    }
+    return value;
+  }
+
+private:
+  // Tentative quads become true ones where they can.
+  void make_sound() {
+    const std::vector<Box3> boxes = face_boxes(cage_, at_);
+    for (const Index f : faces_) {
+      CageFace face = cage_.face(f);
+      if (face.tentative && guard_.is_sound(cage_, at_, boxes, face, f)) {
+        face.tentative = false;
+        cage_.set_face(f, face);
+      }
+    }
+  }
+
+  static Corners corners(const Positions& at, const Triangle& t) {
+    return {at[t[0]], at[t[1]], at[t[2]]};
+  }
+
+  [[nodiscard]] double value_of(const Positions& at, const CageFace& face) const {
+    const FaceParts parts(face, FaceParts::Of::all);
+    const double share = parts.count == 4 ? 0.5 : 1;
+    double sum = 0;
+    for (const Triangle& part : parts) {
+      const Corners t = corners(at, part);
+      double gap = 0;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 p = (4 * t[k] + t[(k + 1) % 3] + t[(k + 2) % 3]) / 6;
+        gap += objective_.gap(objective_.nearest(p)) / 3;
+      }
+      sum += share * ((t[0] - center_).dot((t[1] - center_).cross(t[2] - center_)) / 6 +
+                      triangle_area(t) * gap);
+      const PartShape& shape = parts.count == 4 ? square_corner : equilateral;
+      const double x = shape_excess(t, shape);
+      sum += shape_weight(face) * (shape.linear * x + x * x);
+    }
+    if (face.is_quad()) {
+      const QuadCorners q = corners_of(at, face);
+      const double area = quad_area(q);
+      sum += even_weight(face) * (q[0] - q[1] + q[2] - q[3]).squaredNorm() / area;
+      sum += flat_weight_ * std::pow(six_volumes(q), 2) / (area * area * area);
+    }
+    return sum;
+  }
+
+  // Of each part: corners that point inward cannot be made square.
+  [[nodiscard]] double shape_weight(const CageFace& face) const {
+    return !face.is_quad() ? objective_.shape_weight() : face.tentative ? 0 : square_weight_ / 4;
+  }
+  [[nodiscard]] double even_weight(const CageFace& face) const {
+    return (face.tentative ? options_.tentative : options_.even) * objective_.shape_weight();
+  }
+
+  [[nodiscard]] double total(const Positions& at) const {
+    return parallel_reduce_ordered(
+        0, faces_.size(), 8, 0.0,
+        [&](std::size_t first, std::size_t last) {
+          double sum = 0;
+          for (std::size_t i = first; i < last; ++i) {
+            sum += value_of(at, cage_.face(faces_[i]));
+          }
+          return sum;
+        },
+        [](double& sum, double part) { sum += part; });
+  }
+
+  struct Piece {
+    std::vector<BlockConstraint> constraints;
+    std::array<Vec3, 4> gradient;
+    std::array<std::array<Mat3, 4>, 4> hessian;
+
+    Piece() {
+      gradient.fill(Vec3::Zero());
+      for (auto& row : hessian) {
+        row.fill(Mat3::Zero());
+      }
+    }
+  };
+
+  // The positions after one quadratic program: of the objective, or only of the constraints.
+  [[nodiscard]] Positions moved(const Positions& at, double reach, bool towards_goal) const {
+    std::vector<Piece> pieces(faces_.size());
+    parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
+      Piece& piece = pieces[i];
+      const CageFace& face = cage_.face(faces_[i]);
+      const FaceParts parts(face, FaceParts::Of::all);
+      const Vec3 normal = area_vector(at, face);
+      for (int k = 0; k < parts.count; ++k) {
+        const Triangle& part = parts.triangles[k];
+        const Corners t = corners(at, part);
+        if ((t[1] - t[0]).cross(t[2] - t[0]).dot(normal) > 0) {
+          add_constraints(part, t, reach, piece.constraints);
+        }
+        if (towards_goal) {
+          constexpr std::array<int, 4> first = {0, 2, 1, 3};
+          add_part(t, first[k], face, piece);
+        }
+      }
+      add_side_constraints(at, faces_[i], reach, piece.constraints);
+      if (towards_goal && face.is_quad()) {
+        add_planarity(corners_of(at, face), even_weight(face), piece);
+      }
+    });
+    BlockQuadratic quadratic(living_.size());
+    std::vector<BlockConstraint> constraints;
+    // The program is scaled to lengths of the diagonal and to gradients near one.
+    const double unit = objective_.diagonal();
+    const double scale = static_cast<double>(faces_.size()) / (unit * unit * unit);
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const CageFace& face = cage_.face(faces_[i]);
+      for (BlockConstraint c : pieces[i].constraints) {
+        c.bound /= unit;
+        constraints.push_back(c);
+      }
+      for (int k = 0; k < face.size; ++k) {
+        quadratic.gradient[number_[face[k]]] += scale * unit * pieces[i].gradient[k];
+        for (int m = 0; m <= k; ++m) {
+          quadratic.terms.push_back(
+              {number_[face[k]], number_[face[m]], scale * unit * unit * pieces[i].hessian[k][m]});
+        }
+      }
+    }
+    for (Index v = 0; v < living_.size(); ++v) {
+      // Directions in which nothing changes are held by a weak spring.
+      quadratic.terms.push_back({v, v, (towards_goal ? 2.0 : 50.0) * Mat3::Identity()});
+      for (int k = 0; k < 3; ++k) {
+        const bool held = k == 0 && cage_.on_border(living_[v]);
+        const double room = held ? 1e-9 : reach / unit;
+        constraints.push_back({{v, v, v}, {1, 0, 0}, Vec3::Unit(k), -room});
+        constraints.push_back({{v, v, v}, {1, 0, 0}, -Vec3::Unit(k), -room});
+      }
+    }
+    // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
+    const double slack = towards_goal ? 1e-6 : 0.05 * guard_.clearance() / unit;
+    const std::vector<Vec3> step = minimize(quadratic, constraints, slack);
+    Positions result = at;
+    for (Index v = 0; v < living_.size(); ++v) {
+      Vec3 way = unit * step[v];
+      if (cage_.on_border(living_[v])) {
+        way.x() = 0;
+      }
+      result[living_[v]] += way;
+    }
+    return result;
+  }
+
+  // The engine's objective on one part, and the shape; `first` is the face's corner that the part
+  // begins with.
+  void add_part(const Corners& t, int first, const CageFace& face, Piece& piece) const {
+    const bool of_quad = face.is_quad();
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double area = normal.norm() / 2;
+    if (!(area > 0)) {
+      return;
+    }
+    const auto corner = [&](int k) { return of_quad ? (first + k) % 4 : k; };
+    const double part = of_quad ? 0.5 : 1;
+    const Vec3 n = normal / (2 * area);
+    double mean = 0;
+    for (int s = 0; s < 6; ++s) {
+      std::array<double, 3> share;
+      for (int k = 0; k < 3; ++k) {
+        const double spread = s < 3 ? 0.5 : -0.25; // three samples near the corners, three opposite
+        share[k] = s % 3 == k ? 1.0 / 3 + 2 * spread / 3 : 1.0 / 3 - spread / 3;
+      }
+      const Vec3 p = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
+      const SurfaceTree::Nearest near = objective_.nearest(p);
+      const double d = near.distance;
+      mean += objective_.gap(near) / 6;
+      if (!(d > 0)) {
+        continue;
+      }
+      const Vec3 u = (p - near.point) / d;
+      const Mat3 outer = part * area / 6 * objective_.gap_curvature(near) * u * u.transpose();
+      for (int k = 0; k < 3; ++k) {
+        piece.gradient[corner(k)] += part * area / 6 * share[k] * objective_.gap_slope(near) * u;
+        for (int m = 0; m < 3; ++m) {
+          piece.hessian[corner(k)][corner(m)] += share[k] * share[m] * outer;
+        }
+      }
+    }
+    const PartShape& shape = of_quad ? square_corner : equilateral;
+    const double weight = shape_weight(face);
+    const double x = shape_excess(t, shape);
+    const double scaled = shape.scale * area;
+    const double slope_of_x = shape.linear + 2 * x;
+    std::array<Vec3, 3> slope;
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      const int last = (k + 2) % 3;
+      const Vec3 area_slope = n.cross(t[last] - t[next]) / 2;
+      piece.gradient[corner(k)] +=
+          part * ((t[next] - center_).cross(t[last] - center_) / 6 + mean * area_slope);
+      slope[k] =
+          2 * (shape.side[last] * (t[k] - t[next]) + shape.side[next] * (t[k] - t[last])) / scaled -
+          (x + 1) / area * area_slope;
+      piece.gradient[corner(k)] += weight * slope_of_x * slope[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+      for (int m = 0; m < 3; ++m) {
+        const double springs =
+            k == m ? shape.side[(k + 1) % 3] + shape.side[(k + 2) % 3] : -shape.side[3 - k - m];
+        piece.hessian[corner(k)][corner(m)] +=
+            weight * (slope_of_x * springs * 2 / scaled * Mat3::Identity() +
+                      2 * slope[k] * slope[m].transpose());
+      }
+    }
+  }
+
+  void add_planarity(const QuadCorners& q, double even, Piece& piece) const {
+    const double area = quad_area(q);
+    if (!(area > 0)) {
+      return;
+    }
+    const double volume = six_volumes(q);
+    std::array<Vec3, 4> slope;
+    slope[1] = (q[2] - q[0]).cross(q[3] - q[0]);
+    slope[2] = (q[3] - q[0]).cross(q[1] - q[0]);
+    slope[3] = (q[1] - q[0]).cross(q[2] - q[0]);
+    slope[0] = -(slope[1] + slope[2] + slope[3]);
+    const Vec3 skew = q[0] - q[1] + q[2] - q[3];
+    for (int k = 0; k < 4; ++k) {
+      const double sign = k % 2 == 0 ? 1 : -1;
+      piece.gradient[k] += 2 * even / area * sign * skew;
+      for (int m = 0; m < 4; ++m) {
+        piece.hessian[k][m] += 2 * even / area * sign * (m % 2 == 0 ? 1 : -1) * Mat3::Identity();
+      }
+    }
+    const double weight = 2 * flat_weight_ / (area * area * area);
+    for (int k = 0; k < 4; ++k) {
+      piece.gradient[k] += weight * volume * slope[k];
+      for (int m = 0; m < 4; ++m) {
+        piece.hessian[k][m] += weight * slope[k] * slope[m].transpose();
+      }
+    }
+  }
+
+  // Half spaces that keep the part clear of the model for small moves: one for the highest point
+  // of the model below each small triangle of it, and one for the nearest of all.
+  void add_constraints(const Triangle& part, const Corners& t, double reach,
+                       std::vector<BlockConstraint>& constraints) const {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double length = normal.norm();
+    if (!(length > 0)) {
+      return;
+    }
+    const Vec3 n = normal / length;
+    const Triangle vertices{number_[part[0]], number_[part[1]], number_[part[2]]};
+    const SurfaceTree& tree = guard_.model().tree;
+    for (const SurfaceTree::Relief& r : tree.relief(t, cells, -(keep_ + reach), reach)) {
+      constraints.push_back({vertices,
+                             {1 - r.at_b - r.at_c, r.at_b, r.at_c},
+                             n,
+                             std::min(r.height + keep_, reach / 2)});
+    }
+    if (const auto pair = tree.nearest_to(t, guard_.clearance())) {
+      const double distance = pair->distance;
+      const Vec3 u = distance > 0.01 * keep_ ? Vec3((pair->on_a - pair->on_b) / distance) : n;
+      constraints.push_back({vertices, barycentric(pair->on_a, t), u, keep_ - distance});
+    }
+  }
+
+  // The same for the corners, the sides and the diagonals of a face. What is on a side is looked at
+  // by one of its two faces, for both.
+  void add_side_constraints(const Positions& at, Index f, double reach,
+                            std::vector<BlockConstraint>& constraints) const {
+    const CageFace& face = cage_.face(f);
+    const auto add = [&](Index a, Index b, double share) {
+      const Vec3 p = (1 - share) * at[a] + share * at[b];
+      const SurfaceTree::Nearest near = guard_.model().tree.nearest(p, keep_ + reach);
+      if (near.distance > 0.01 * keep_ && std::isfinite(near.distance)) {
+        const Vec3 u = (p - near.point) / near.distance;
+        constraints.push_back({{number_[a], number_[b], number_[b]},
+                               {1 - share, share, 0},
+                               u,
+                               std::min(keep_ - near.distance, reach / 2)});
+      }
+    };
+    const auto add_inside = [&](Index a, Index b) {
+      for (int i = 1; i < cells; ++i) {
+        add(a, b, static_cast<double>(i) / cells);
+      }
+    };
+    for (int k = 0; k < face.size; ++k) {
+      const bool alone = cage_.face_left_of(face[k + 1], face[k]) == no_index;
+      if (face[k] < face[k + 1] || alone) {
+        add_inside(face[k], face[k + 1]);
+      }
+      if (cage_.around(face[k]).front() == f) {
+        add(face[k], face[k + 1], 0);
+      }
+    }
+    if (face.is_quad()) {
+      add_inside(face[0], face[2]);
+      add_inside(face[1], face[3]);
+    }
+  }
+
+  static std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double squared = n.squaredNorm();
+    const double a = (t[2] - t[1]).cross(p - t[1]).dot(n) / squared;
+    const double b = (t[0] - t[2]).cross(p - t[2]).dot(n) / squared;
+    return {a, b, 1 - a - b};
+  }
+
+  // As much of the way from the present positions to the goal as leaves the cage valid: vertices of
+  // faces in trouble go half of their way, again and again, and in the end nowhere.
+  [[nodiscard]] Positions valid_part(const Positions& goal) const {
+    std::vector<double> share(at_.size(), 1);
+    std::vector<std::uint8_t> changed(at_.size(), 1);
+    Positions next = goal;
+    for (;;) {
+      const std::vector<Index> bad = faces_in_trouble(next, changed);
+      if (bad.empty()) {
+        return loses_a_part(next) ? at_ : next;
+      }
+      std::vector<Index> vertices;
+      for (const Index f : bad) {
+        const auto corners = cage_.face(f).span();
+        vertices.insert(vertices.end(), corners.begin(), corners.end());
+      }
+      std::sort(vertices.begin(), vertices.end());
+      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      std::fill(changed.begin(), changed.end(), 0);
+      for (const Index v : vertices) {
+        changed[v] = 1;
+        constexpr double least = 0.1;
+        share[v] = share[v] > least ? share[v] / 2 : 0;
+        next[v] = share[v] > 0 ? Vec3(at_[v] + share[v] * (goal[v] - at_[v])) : at_[v];
+        if (cage_.on_border(v)) {
+          next[v].x() = at_[v].x();
+        }
+      }
+    }
+  }
+
+  // Those among the faces with a changed vertex: what they do to others shows at them.
+  [[nodiscard]] std::vector<Index>
+  faces_in_trouble(const Positions& next, const std::vector<std::uint8_t>& changed) const {
+    const std::vector<Box3> boxes = face_boxes(cage_, next);
+    std::vector<std::uint8_t> bad(faces_.size(), 0);
+    parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
+      const CageFace& face = cage_.face(faces_[i]);
+      const std::span<const Index> v = face.span();
+      const bool still =
+          std::all_of(v.begin(), v.end(), [&](Index k) { return next[k] == at_[k]; });
+      const bool was_seen =
+          std::all_of(v.begin(), v.end(), [&](Index k) { return changed[k] == 0; });
+      if (still || was_seen) {
+        return; // as before the step, when all was well; others report what they do to it
+      }
+      bad[i] = static_cast<std::uint8_t>(misshapen(next, faces_[i]) ||
+                                         guard_.is_crossed(cage_, next, boxes, face, faces_[i]) ||
+                                         !guard_.is_clear(next, face));
+    });
+    std::vector<Index> result;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      if (bad[i] != 0) {
+        result.push_back(faces_[i]);
+      }
+    }
+    return result;
+  }
+
+  // Needles and folds are no better than crossings, unless they were there before; nor are quads
+  // beyond the limits, and what leaves its half of a symmetric cage.
+  [[nodiscard]] bool misshapen(const Positions& next, Index f) const {
+    constexpr double worst_defect = 8;
+    constexpr double sharpest = -0.9;
+    const CageFace& face = cage_.face(f);
+    if (face.is_quad() && !face.tentative) {
+      const QuadLimits limits = shape_of(corners_of(at_, face)).widened(guard_.limits());
+      if (!shape_of(corners_of(next, face)).within(limits)) {
+        return true;
+      }
+    } else {
+      for (const Triangle& t : FaceParts(face)) {
+        const double defect = shape_defect(corners(next, t));
+        if (defect > std::max(worst_defect, shape_defect(corners(at_, t)))) {
+          return true;
+        }
+      }
+    }
+    const auto bend_to = [&](const Positions& at, Index other) {
+      const Vec3 m = area_vector(at, face);
+      const Vec3 n = area_vector(at, cage_.face(other));
+      const double length = m.norm() * n.norm();
+      return length > 0 ? m.dot(n) / length : -1;
+    };
+    for (int k = 0; k < face.size; ++k) {
+      const Index other = cage_.face_left_of(face[k + 1], face[k]);
+      if (other != no_index) {
+        const double b = bend_to(next, other);
+        if (b < sharpest && b < bend_to(at_, other)) {
+          return true;
+        }
+      }
+      if (cage_.has_border() && !cage_.on_border(face[k])) {
+        const double side = at_[face[k]].x() < 0 ? -1 : 1;
+        const double before = side * at_[face[k]].x();
+        const double least = std::min(plane_gap * guard_.clearance(), before);
+        if (!(side * next[face[k]].x() >= least)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool loses_a_part(const Positions& next) const {
+    const std::vector<ModelSurface::Part>& parts = guard_.model().parts;
+    std::vector<std::uint8_t> lost(parts.size(), 0);
+    parallel_for(0, parts.size(), 1, [&](std::size_t i) {
+      const Vec3& p = parts[i].point;
+      const Vec3 mirrored(-p.x(), p.y(), p.z());
+      double angle = 0;
+      for (const Index f : faces_) {
+        const FaceParts face(cage_.face(f));
+        for (int k = 0; k < std::min(2, face.count); ++k) {
+          const Corners t = corners(next, face.triangles[k]);
+          angle += solid_angle(p, t);
+          angle += cage_.has_border() ? solid_angle(mirrored, t) : 0;
+        }
+      }
+      lost[i] = static_cast<std::uint8_t>(angle < 2 * std::numbers::pi);
+    });
+    return std::find(lost.begin(), lost.end(), 1) != lost.end();
+  }
+
+  QuadCage& cage_;
+  const QuadGuard& guard_;
+  const Objective& objective_;
+  RelaxQuadsOptions options_;
+  Positions at_; // the present, valid positions of all vertices
+  std::vector<Index> number_;
+  std::vector<Index> living_;
+  std::vector<Index> faces_;
+  Vec3 center_ = Vec3::Zero();
+  double square_weight_ = 0;
+  double flat_weight_ = 0;
+  double keep_ = 0;
+};
+
+} // namespace
+
+double relax_quads(QuadCage& cage, const QuadGuard& guard, const Objective& objective,
+                   const RelaxQuadsOptions& options, const Progress& progress) {
+  return Relaxation(cage, guard, objective, options).run(progress);
+}
+
+} // namespace cagewright

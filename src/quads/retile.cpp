@@ -1,0 +1,357 @@
+#include "quads/retile.h"
+
+#include "core/parallel.h"
+#include "improve/objective.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace cagewright {
+namespace {
+
+/// Triangles and quads over the corners 0, 1, ... of a polygon.
+using Tiling = std::vector<CageFace>;
+
+int triangles_in(std::span<const CageFace> faces) {
+  return static_cast<int>(
+      std::count_if(faces.begin(), faces.end(), [](const CageFace& f) { return !f.is_quad(); }));
+}
+
+Tiling joined(const Tiling& a, const Tiling& b) {
+  Tiling all = a;
+  all.insert(all.end(), b.begin(), b.end());
+  return all;
+}
+
+/// All tilings of the polygon with corners first, first + 1, ... last that have at most so many
+/// triangles, by its side last first.
+std::vector<Tiling> tilings(Index first, Index last, int triangles) {
+  if (last == first + 1) {
+    return {Tiling{}};
+  }
+  if (static_cast<int>(last - first + 1) % 2 > triangles) {
+    return {};
+  }
+  std::vector<Tiling> all;
+  for (Index i = first + 1; i < last; ++i) {
+    const std::vector<Tiling> before = tilings(first, i, triangles);
+    const std::vector<Tiling> after = tilings(i, last, triangles);
+    for (const Tiling& a : before) {
+      for (const Tiling& b : after) {
+        all.push_back(joined(a, b));
+        all.back().push_back(CageFace::triangle(first, i, last));
+      }
+    }
+    for (Index j = i + 1; j < last; ++j) {
+      const std::vector<Tiling> between = tilings(i, j, triangles);
+      const std::vector<Tiling> end = tilings(j, last, triangles);
+      for (const Tiling& a : before) {
+        for (const Tiling& b : between) {
+          for (const Tiling& c : end) {
+            all.push_back(joined(joined(a, b), c));
+            all.back().push_back(CageFace::quad(first, i, j, last));
+          }
+        }
+      }
+    }
+  }
+  return all;
+}
+
+constexpr int most_corners = 10;
+
+/// By the number of corners: those with the fewest triangles, 0 or 1; and up to six corners those
+/// with two more.
+std::array<std::vector<Tiling>, most_corners + 1> useful_tilings() {
+  std::array<std::vector<Tiling>, most_corners + 1> result;
+  for (int n = 4; n <= most_corners; ++n) {
+    const int most = n % 2 + (n <= 6 ? 2 : 0);
+    result[n] = tilings(0, static_cast<Index>(n - 1), most);
+    std::erase_if(result[n], [&](const Tiling& t) { return triangles_in(t) > most; });
+    std::stable_sort(result[n].begin(), result[n].end(), [](const Tiling& a, const Tiling& b) {
+      return triangles_in(a) < triangles_in(b);
+    });
+  }
+  return result;
+}
+
+struct Exchange {
+  double gain = 0;
+  std::vector<Index> removed;
+  std::vector<CageFace> added;
+};
+
+class Retiling {
+public:
+  Retiling(QuadCage& cage, const QuadGuard& guard, const DirectionField& field, const Taste& taste)
+      : cage_(cage), guard_(guard), field_(field), taste_(taste), tilings_(useful_tilings()),
+        boxes_(face_boxes(cage, cage.positions())) {}
+
+  std::size_t run(const Progress& progress) {
+    std::vector<std::uint8_t> changed(cage_.vertex_end(), 1);
+    std::size_t total = 0;
+    constexpr int most_rounds = 40;
+    for (int round = 0; round < most_rounds && !progress.cancelled(); ++round) {
+      const std::vector<std::vector<Index>> regions = regions_at(changed);
+      std::vector<std::optional<Exchange>> found(regions.size());
+      parallel_for(0, regions.size(), 4,
+                   [&](std::size_t i) { found[i] = best_exchange(regions[i]); });
+      std::vector<Exchange> exchanges;
+      for (std::optional<Exchange>& exchange : found) {
+        if (exchange) {
+          exchanges.push_back(std::move(*exchange));
+        }
+      }
+      std::stable_sort(exchanges.begin(), exchanges.end(),
+                       [](const Exchange& a, const Exchange& b) { return a.gain > b.gain; });
+      std::fill(changed.begin(), changed.end(), 0);
+      const std::size_t made = make(exchanges, changed);
+      total += made;
+      if (made == 0) {
+        break;
+      }
+    }
+    return total;
+  }
+
+private:
+  // Two or three neighbouring faces with a corner that has changed, each set once.
+  [[nodiscard]] std::vector<std::vector<Index>>
+  regions_at(const std::vector<std::uint8_t>& changed) const {
+    std::set<std::vector<Index>> regions;
+    const auto neighbors = [&](Index f) {
+      std::vector<Index> result;
+      const CageFace& face = cage_.face(f);
+      for (int i = 0; i < face.size; ++i) {
+        const Index other = cage_.face_left_of(face[i + 1], face[i]);
+        if (other != no_index) {
+          result.push_back(other);
+        }
+      }
+      return result;
+    };
+    const auto is_changed = [&](const std::vector<Index>& region) {
+      for (const Index f : region) {
+        for (const Index v : cage_.face(f).span()) {
+          if (changed[v] != 0) {
+            return true;
+          }
+        }
+      }
+      return false;
+    };
+    const auto add = [&](std::vector<Index> region) {
+      std::sort(region.begin(), region.end());
+      if (std::adjacent_find(region.begin(), region.end()) == region.end() && is_changed(region)) {
+        regions.insert(std::move(region));
+      }
+    };
+    for (Index f = 0; f < cage_.face_end(); ++f) {
+      if (!cage_.has_face(f)) {
+        continue;
+      }
+      const std::vector<Index> beside = neighbors(f);
+      for (std::size_t i = 0; i < beside.size(); ++i) {
+        add({f, beside[i]});
+        for (std::size_t j = 0; j < i; ++j) {
+          add({f, beside[i], beside[j]});
+        }
+      }
+      if (!cage_.face(f).is_quad()) {
+        std::vector<Index> strip{f};
+        visit_strips(strip, neighbors, add);
+      }
+    }
+    return {regions.begin(), regions.end()};
+  }
+
+  // Strips of a triangle, two or three quads, and a triangle.
+  template <class Neighbors, class Add>
+  void visit_strips(std::vector<Index>& strip, const Neighbors& neighbors, const Add& add) const {
+    constexpr std::size_t most_faces = 5;
+    for (const Index next : neighbors(strip.back())) {
+      if (std::find(strip.begin(), strip.end(), next) != strip.end()) {
+        continue;
+      }
+      strip.push_back(next);
+      if (!cage_.face(next).is_quad()) {
+        if (strip.size() > 3) {
+          add(strip);
+        }
+      } else if (strip.size() < most_faces) {
+        visit_strips(strip, neighbors, add);
+      }
+      strip.pop_back();
+    }
+  }
+
+  // The corners round the faces, if these are a disc without a corner inside.
+  [[nodiscard]] std::vector<Index> border_of(const std::vector<Index>& region) const {
+    std::vector<std::array<Index, 2>> sides;
+    std::set<Index> corners;
+    for (const Index f : region) {
+      const CageFace& face = cage_.face(f);
+      for (int i = 0; i < face.size; ++i) {
+        corners.insert(face[i]);
+        const auto back = std::find(sides.begin(), sides.end(), std::array{face[i + 1], face[i]});
+        if (back != sides.end()) {
+          sides.erase(back);
+        } else {
+          sides.push_back({face[i], face[i + 1]});
+        }
+      }
+    }
+    std::vector<Index> ring{sides[0][0]};
+    while (ring.size() <= sides.size()) {
+      const auto next = std::find_if(sides.begin(), sides.end(),
+                                     [&](const auto& side) { return side[0] == ring.back(); });
+      if (next == sides.end() || (*next)[1] == ring[0]) {
+        break;
+      }
+      ring.push_back((*next)[1]);
+    }
+    const bool is_disc = ring.size() == sides.size() && ring.size() == corners.size();
+    return is_disc ? ring : std::vector<Index>();
+  }
+
+  [[nodiscard]] double valence_cost(Index v, int change) const {
+    const int half = cage_.on_border(v) ? 2 : 1;
+    const int valence = half * (static_cast<int>(cage_.around(v).size()) + change);
+    constexpr int least = 3;
+    return valence < least ? unfit : taste_.valence * (valence - 4) * (valence - 4);
+  }
+
+  [[nodiscard]] std::optional<Exchange> best_exchange(const std::vector<Index>& region) const {
+    const std::vector<Index> ring = border_of(region);
+    if (ring.size() < 4 || ring.size() > most_corners) {
+      return std::nullopt;
+    }
+    int triangles = 0;
+    double now = 0;
+    for (const Index f : region) {
+      now += cost_of(cage_, field_, taste_, cage_.face(f));
+      triangles += cage_.face(f).is_quad() ? 0 : 1;
+    }
+    std::vector<int> faces_at(ring.size(), 0);
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      for (const Index f : region) {
+        faces_at[i] -= cage_.face(f).has(ring[i]) ? 1 : 0;
+      }
+      now += valence_cost(ring[i], 0);
+    }
+    std::vector<Exchange> better;
+    for (const Tiling& tiling : tilings_[ring.size()]) {
+      if (triangles_in(tiling) > triangles) {
+        break;
+      }
+      double then = 0;
+      std::vector<int> change = faces_at;
+      Exchange exchange;
+      for (const CageFace& local : tiling) {
+        CageFace face = local;
+        for (int k = 0; k < face.size; ++k) {
+          ++change[local.corners[k]];
+          face.corners[k] = ring[local.corners[k]];
+        }
+        then += cost_of(cage_, field_, taste_, face);
+        exchange.added.push_back(face);
+      }
+      for (std::size_t i = 0; i < ring.size() && then < unfit; ++i) {
+        then += valence_cost(ring[i], change[i]);
+      }
+      constexpr double least_gain = 1e-3;
+      if (now - then > least_gain) {
+        exchange.gain = now - then;
+        exchange.removed = region;
+        better.push_back(std::move(exchange));
+      }
+    }
+    std::stable_sort(better.begin(), better.end(),
+                     [](const Exchange& a, const Exchange& b) { return a.gain > b.gain; });
+    for (Exchange& exchange : better) {
+      if (allows(exchange)) {
+        return std::move(exchange);
+      }
+    }
+    return std::nullopt;
+  }
+
+  // Quads that have to be tentative cost more: it must pay all the same.
+  [[nodiscard]] bool allows(Exchange& exchange) const {
+    if (!keeps_shape(exchange) ||
+        !guard_.allows(cage_, boxes_, exchange.removed, exchange.added, taste_.wishes.beyond > 0)) {
+      return false;
+    }
+    const auto tentative = std::count_if(exchange.added.begin(), exchange.added.end(),
+                                         [](const CageFace& face) { return face.tentative; });
+    return exchange.gain > taste_.tentative * static_cast<double>(tentative);
+  }
+
+  // No new triangle is a needle, no new face folds onto a neighbour.
+  [[nodiscard]] bool keeps_shape(const Exchange& exchange) const {
+    constexpr double worst_defect = 8;
+    constexpr double sharpest = -0.8;
+    const std::vector<Vec3>& x = cage_.positions();
+    for (const CageFace& face : exchange.added) {
+      if (!face.is_quad() && shape_defect({x[face[0]], x[face[1]], x[face[2]]}) > worst_defect) {
+        return false;
+      }
+      const Vec3 n = area_vector(x, face).normalized();
+      for (int i = 0; i < face.size; ++i) {
+        const Index other = cage_.face_left_of(face[i + 1], face[i]);
+        const bool stays = other != no_index &&
+                           std::find(exchange.removed.begin(), exchange.removed.end(), other) ==
+                               exchange.removed.end();
+        if (stays && n.dot(area_vector(x, cage_.face(other)).normalized()) < sharpest) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  std::size_t make(std::vector<Exchange>& exchanges, std::vector<std::uint8_t>& changed) {
+    std::size_t made = 0;
+    for (Exchange& exchange : exchanges) {
+      const bool is_stale =
+          std::any_of(exchange.removed.begin(), exchange.removed.end(), [&](Index f) {
+            const auto corners = cage_.face(f).span();
+            return !cage_.has_face(f) || std::any_of(corners.begin(), corners.end(),
+                                                     [&](Index v) { return changed[v] != 0; });
+          });
+      if (is_stale || !allows(exchange)) {
+        continue;
+      }
+      for (const Index f : exchange.removed) {
+        for (const Index v : cage_.face(f).span()) {
+          changed[v] = 1;
+        }
+      }
+      cage_.replace(exchange.removed, exchange.added);
+      for (const CageFace& face : exchange.added) {
+        boxes_.push_back(box_of(cage_.positions(), face));
+      }
+      ++made;
+    }
+    return made;
+  }
+
+  QuadCage& cage_;
+  const QuadGuard& guard_;
+  const DirectionField& field_;
+  const Taste& taste_;
+  std::array<std::vector<Tiling>, most_corners + 1> tilings_;
+  std::vector<Box3> boxes_;
+};
+
+} // namespace
+
+std::size_t retile(QuadCage& cage, const QuadGuard& guard, const DirectionField& field,
+                   const Taste& taste, const Progress& progress) {
+  return Retiling(cage, guard, field, taste).run(progress);
+}
+
+} // namespace cagewright

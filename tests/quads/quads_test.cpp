@@ -1,0 +1,259 @@
+#include "quads/quads.h"
+
+#include "core/random.h"
+#include "envelope/envelope.h"
+#include "improve/improve.h"
+#include "mesh/shapes.h"
+#include "mesh/topology.h"
+#include "mesh/triangulate.h"
+#include "spatial/bvh.h"
+#include "support/models.h"
+#include "validate/validate_cage.h"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <stop_token>
+
+namespace cagewright {
+namespace {
+
+constexpr double clearance = 0.002;
+
+/// A cage of triangles round the model.
+TriangleMesh cage_of(TriangleView model, int vertices) {
+  EnvelopeOptions options;
+  options.clearance = clearance;
+  options.vertices = vertices;
+  const Result<Envelope> start = envelope(model, options);
+  Result<Improved> made =
+      improve(start->mesh, model, {.vertices = vertices, .clearance = clearance, .rounds = 0});
+  return std::move(made->cage);
+}
+
+double diagonal_of(TriangleView model) {
+  Box3 box;
+  for (const Vec3& p : model.positions) {
+    box.extend(p);
+  }
+  return box.diagonal().norm();
+}
+
+/// Each quad cut along one of its diagonals.
+TriangleMesh cut_at_random(const PolygonMesh& mesh, Random& random) {
+  TriangleMesh cut{mesh.positions, {}};
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const Index> face = mesh.face(f);
+    const std::size_t k = face.size() == 4 ? random.below(2) : 0;
+    cut.triangles.push_back({face[k], face[k + 1], face[k + 2]});
+    if (face.size() == 4) {
+      cut.triangles.push_back({face[k], face[k + 2], face[(k + 3) % 4]});
+    }
+  }
+  return cut;
+}
+
+void expect_good_quads(const PolygonMesh& cage, TriangleView model, double kept = clearance) {
+  const Result<ValidityReport> report = validate_cage(cage, model);
+  ASSERT_TRUE(report && report->valid());
+  const QuadReport quads = report_of(cage);
+  const QuadLimits limits;
+  EXPECT_LE(quads.max_bend_degrees, limits.max_bend_degrees + 1e-9);
+  EXPECT_LE(quads.max_angle_degrees, limits.max_angle_degrees + 1e-9);
+  EXPECT_LT(limits.max_angle_degrees, 180);
+  Random random(1);
+  const TriangleBvh bvh(model);
+  for (int round = 0; round < 5; ++round) {
+    const TriangleMesh cut = cut_at_random(cage, random);
+    const Result<ValidityReport> valid = validate_cage(TriangleView(cut), model);
+    EXPECT_TRUE(valid && valid->valid());
+    constexpr double rounding = 1e-9;
+    EXPECT_GE(mesh_distance(TriangleBvh(cut), bvh).distance,
+              (kept - rounding) * diagonal_of(model));
+  }
+}
+
+TriangleMesh figure() {
+  TriangleMesh limb = make_icosphere(2);
+  for (Vec3& p : limb.positions) {
+    p = Vec3(1.5 + p.x(), 0.15 * p.y(), 0.15 * p.z());
+  }
+  TriangleMesh crumb = make_icosphere(0);
+  for (Vec3& p : crumb.positions) {
+    p = 0.02 * p + Vec3(0, 1.1, 0);
+  }
+  return joined(joined(make_icosphere(3), limb), crumb);
+}
+
+struct Model {
+  const char* name;
+  TriangleMesh mesh;
+  double share;
+};
+
+void PrintTo(const Model& model, std::ostream* out) {
+  *out << model.name;
+}
+
+TriangleMesh moved(TriangleMesh mesh, double scale, const Vec3& offset) {
+  for (Vec3& p : mesh.positions) {
+    p = scale * p + offset;
+  }
+  return mesh;
+}
+
+class QuadsOf : public testing::TestWithParam<Model> {};
+
+TEST_P(QuadsOf, AreManyAndValidAlongAnyDiagonalsAndKeepTheClearance) {
+  const Model& model = GetParam();
+  const TriangleMesh cage = cage_of(model.mesh, 60);
+  const Result<Quadrangulated> made = make_quads(cage, model.mesh, {.clearance = clearance});
+  ASSERT_TRUE(made);
+  EXPECT_LE(made->cage.positions.size(), cage.positions.size());
+  EXPECT_GE(made->report.share, model.share);
+  expect_good_quads(made->cage, model.mesh);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, QuadsOf,
+    testing::Values(Model{"Sphere", make_icosphere(3), 0.7},
+                    Model{"Torus", make_torus(0.3, 40, 20), 0.7}, Model{"Figure", figure(), 0.6},
+                    Model{"TinyDistantFigure", moved(figure(), 1e-4, {10, -10, 10}), 0.6}),
+    [](const auto& instance) { return std::string(instance.param.name); });
+
+struct RealModel {
+  const char* name;
+  std::vector<std::string> files;
+};
+
+void PrintTo(const RealModel& model, std::ostream* out) {
+  *out << model.name;
+}
+
+class QuadsOfRealModel : public testing::TestWithParam<RealModel> {};
+
+TEST_P(QuadsOfRealModel, AreMostFacesOfACageThatWasNotRefined) {
+  const auto model = test::real_model({GetParam().files[0], GetParam().files[1]});
+  if (!model) {
+    GTEST_SKIP() << "no such model in CAGEWRIGHT_MODELS";
+  }
+  const TriangleMesh cage = cage_of(*model, 100);
+  const Result<Quadrangulated> made = make_quads(cage, *model, {.clearance = clearance});
+  ASSERT_TRUE(made);
+  EXPECT_GE(made->report.share, 0.6);
+  expect_good_quads(made->cage, *model);
+}
+
+INSTANTIATE_TEST_SUITE_P(Characters, QuadsOfRealModel,
+                         testing::Values(RealModel{"Cow", {"cow.off", "cow.obj"}},
+                                         RealModel{"Homer", {"homer.off", "homer.obj"}},
+                                         RealModel{"Armadillo",
+                                                   {"armadillo.off", "armadillo.obj"}}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(Quads, AreTheSameOnAnyNumberOfThreads) {
+  const TriangleMesh model = figure();
+  const TriangleMesh cage = cage_of(model, 40);
+  std::vector<Result<Quadrangulated>> made;
+  for (const int threads : {1, 4}) {
+    tbb::task_arena arena(threads);
+    arena.execute([&] { made.push_back(make_quads(cage, model)); });
+  }
+  ASSERT_TRUE(made[0] && made[1]);
+  EXPECT_EQ(made[0]->cage.positions, made[1]->cage.positions);
+  EXPECT_TRUE(std::ranges::equal(made[0]->cage.corners(), made[1]->cage.corners()));
+}
+
+/// The half at x >= 0 of an octahedron, subdivided onto a sphere.
+TriangleMesh half_sphere(double radius, int subdivisions) {
+  TriangleMesh mesh{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, -1}},
+                    {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}};
+  for (int k = 0; k < subdivisions; ++k) {
+    TriangleMesh next{mesh.positions, {}};
+    const auto middle = [&](Index a, Index b) {
+      const Vec3 p = (mesh.positions[a] + mesh.positions[b]).normalized();
+      for (Index v = 0; v < next.positions.size(); ++v) {
+        if (next.positions[v] == p) {
+          return v;
+        }
+      }
+      next.positions.push_back(p);
+      return static_cast<Index>(next.positions.size() - 1);
+    };
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Index ab = middle(a, b);
+      const Index bc = middle(b, c);
+      const Index ca = middle(c, a);
+      next.triangles.insert(next.triangles.end(),
+                            {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    }
+    mesh = std::move(next);
+  }
+  for (Vec3& p : mesh.positions) {
+    p *= radius;
+  }
+  return mesh;
+}
+
+TEST(Quads, OfHalfACageMakeAValidWholeWithItsMirrorImage) {
+  const TriangleMesh half = half_sphere(1.2, 2);
+  const TriangleMesh model = make_icosphere(3);
+  const Result<Quadrangulated> made = make_quads(half, model);
+  ASSERT_TRUE(made);
+  EXPECT_GE(made->report.share, 0.6);
+  PolygonMesh whole = made->cage;
+  std::vector<Index> image(whole.positions.size());
+  for (Index v = 0; v < image.size(); ++v) {
+    const Vec3 p = made->cage.positions[v];
+    EXPECT_GE(p.x(), 0);
+    image[v] = p.x() == 0 ? v : static_cast<Index>(whole.positions.size());
+    if (p.x() != 0) {
+      whole.positions.emplace_back(-p.x(), p.y(), p.z());
+    }
+  }
+  for (std::size_t f = 0; f < made->cage.face_count(); ++f) {
+    std::vector<Index> face;
+    for (const Index v : made->cage.face(f)) {
+      face.insert(face.begin(), image[v]);
+    }
+    whole.add_face(face);
+  }
+  expect_good_quads(whole, model);
+}
+
+TEST(Quads, OfNothingOrOfAnOpenCageAreRefused) {
+  const TriangleMesh model = make_icosphere(1);
+  EXPECT_EQ(make_quads({}, model).error().code, ErrorCode::invalid_cage);
+  const TriangleMesh cage = moved(make_icosphere(1), 1.5, {0, 0, 0});
+  EXPECT_EQ(make_quads(cage, {}).error().code, ErrorCode::unfit_model);
+  TriangleMesh open = moved(cage, 1, {3, 0, 0});
+  open.triangles.pop_back();
+  EXPECT_EQ(make_quads(open, model).error().code, ErrorCode::invalid_cage);
+  EXPECT_EQ(make_quads(cage, model, {.clearance = 0}).error().code, ErrorCode::invalid_option);
+}
+
+TEST(Quads, CanBeCancelled) {
+  const TriangleMesh model = make_icosphere(1);
+  std::stop_source source;
+  source.request_stop();
+  const Progress progress(source.get_token());
+  const auto made = make_quads(moved(model, 1.5, {0, 0, 0}), model, {}, progress);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::cancelled);
+}
+
+TEST(PairCoplanar, GivesTheCubeItsSixFaces) {
+  const PolygonMesh cube = pair_coplanar(make_cube());
+  EXPECT_EQ(cube.face_count(), 6U);
+  EXPECT_EQ(report_of(cube).quads, 6U);
+  EXPECT_EQ(report_of(cube).rings, 3U);
+  EXPECT_TRUE(topology(cube).is_closed());
+}
+
+TEST(PairCoplanar, LeavesASurfaceThatIsNowhereFlat) {
+  EXPECT_EQ(report_of(pair_coplanar(make_icosphere(1))).quads, 0U);
+}
+
+} // namespace
+} // namespace cagewright
