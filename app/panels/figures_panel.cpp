@@ -79,6 +79,7 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
     auto* value = new QLabel("-");
     value->setObjectName(key);
     value->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    value->setWordWrap(true);
     value->setToolTip(help);
     form->addRow(label, value);
     form->labelForField(value)->setToolTip(help);
