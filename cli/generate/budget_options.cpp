@@ -53,6 +53,11 @@ void add_budget_options(CLI::App& command, GenerateArguments& arguments) {
       ->each(asked)
       ->group(group);
   command
+      .add_flag("--quads", arguments.options.quads,
+                "Quads where they can be, none concave and none bent by more than 40 degrees; the "
+                "cage is valid along both diagonals of each")
+      ->group(group);
+  command
       .add_option("--method", budget.start,
                   "What a cage within a budget is made from: envelope, a surface of voxels of any "
                   "topology; or obb, the union of the boxes")

@@ -95,6 +95,23 @@ std::string boxes_line(const BoxDecomposition& boxes, std::size_t count) {
                          : "");
 }
 
+nlohmann::json to_json(const QuadReport& quads) {
+  return {{"quads", quads.quads},
+          {"triangles", quads.triangles},
+          {"share", quads.share},
+          {"max_bend_degrees", quads.max_bend_degrees},
+          {"min_angle_degrees", quads.min_angle_degrees},
+          {"max_angle_degrees", quads.max_angle_degrees},
+          {"rings", quads.rings}};
+}
+
+std::string quads_line(const QuadReport& quads) {
+  return fmt::format("  {} quads and {} triangles: {:.0f} % quads, bent by up to {:.0f} degrees; "
+                     "{} closed strips of quads\n",
+                     quads.quads, quads.triangles, 100 * quads.share, quads.max_bend_degrees,
+                     quads.rings);
+}
+
 } // namespace
 
 nlohmann::json to_json(const BoxDecomposition& boxes, const std::vector<int>& cover) {
@@ -121,6 +138,9 @@ nlohmann::json to_json(const GeneratedCage& made, const CageMetrics& metrics) {
   j["registration"] = to_json(made.registration);
   j["cage"] = figures_as_json(metrics);
   j["cage"]["valid"] = true; // generate_cage() returns no other
+  if (made.faces.face_count() < made.cage.triangles.size()) {
+    j["quads"] = to_json(report_of(made.faces));
+  }
   j["times"] = to_json(made.times);
   return j;
 }
@@ -180,6 +200,9 @@ nlohmann::json to_json(const BudgetCage& made, const CageMetrics& metrics) {
   j["budget"]["gap"] = made.gap ? nlohmann::json(*made.gap) : nlohmann::json();
   j["cage"] = figures_as_json(metrics);
   j["cage"]["valid"] = true; // make_budget_cage() returns no other
+  if (made.quads) {
+    j["quads"] = to_json(*made.quads);
+  }
   j["symmetry"] = symmetry_json(made);
   j["times"] = to_json(made.times);
   return j;
@@ -196,6 +219,8 @@ std::string summary(const GeneratedCage& made, const CageMetrics& metrics) {
   return "a valid cage\n" + boxes_line(made.boxes, made.leaves.size()) +
          fmt::format("  {} pairs of neighbouring boxes joined at a common quad\n",
                      made.registration.joints.size()) +
+         (made.faces.face_count() < made.cage.triangles.size() ? quads_line(report_of(made.faces))
+                                                               : std::string()) +
          figures_as_text(metrics) + times_line(made.times);
 }
 
@@ -225,6 +250,7 @@ std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
     text += "  not made from boxes: " + made.why_not_boxes + "\n";
   }
   text += symmetry_line(made);
+  text += made.quads ? quads_line(*made.quads) : std::string();
   if (made.clearance < made.clearance_asked) {
     text += fmt::format("  the boxes came nearer than the clearance asked for: {:.4f} % of the "
                         "diagonal was kept, not {:.4f} %\n",

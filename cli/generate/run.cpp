@@ -90,8 +90,7 @@ int make_cage(const GenerateArguments& arguments, const Session& session,
   }
   const CageMetrics metrics = measure_cage(made->cage, model);
   progress(1, "done");
-  if (const Status written =
-          write_outputs(arguments, PolygonMesh(made->cage), to_json(*made, metrics));
+  if (const Status written = write_outputs(arguments, made->faces, to_json(*made, metrics));
       !written) {
     return fail(written.error());
   }
@@ -104,6 +103,7 @@ int make_cage_within_budget(const GenerateArguments& arguments, const Session& s
   const Progress progress = session.progress();
   BudgetCageOptions options = arguments.budget;
   options.boxes = arguments.options;
+  options.quads = arguments.options.quads;
   options.improve.density = density;
   if (arguments.vertices > 0 || options.improve.faces > 0 || options.max_gap > 0) {
     options.improve.vertices = arguments.vertices;
@@ -115,7 +115,8 @@ int make_cage_within_budget(const GenerateArguments& arguments, const Session& s
   const CageMetrics metrics = measure_cage(made->cage, model);
   progress(1, "done");
   if (const Status written =
-          write_outputs(arguments, PolygonMesh(made->cage), to_json(*made, metrics));
+          write_outputs(arguments, made->polygons ? *made->polygons : PolygonMesh(made->cage),
+                        to_json(*made, metrics));
       !written) {
     return fail(written.error());
   }

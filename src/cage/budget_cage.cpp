@@ -7,6 +7,7 @@
 #include "cage/unit_frame.h"
 #include "envelope/envelope.h"
 #include "mesh/measures.h"
+#include "mesh/triangulate.h"
 #include "spatial/bvh.h"
 #include "validate/validate_cage.h"
 
@@ -143,10 +144,60 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
   return made;
 }
 
+/// The cage of triangles, made into one of quads.
+Result<BudgetCage> make_quad_cage(TriangleView model, BudgetCageOptions options,
+                                  const Progress& progress) {
+  if (options.max_gap > 0 || options.boxes.boxes.pieces == Pieces::apart ||
+      (options.symmetry != Symmetry::off && options.symmetry != Symmetry::automatic)) {
+    return Error{
+        ErrorCode::invalid_option,
+        "a cage of quads cannot be mirrored, in pieces or within a greatest gap yet; leave "
+        "out the quads, or the other option"};
+  }
+  constexpr double triangles_made = 0.5;
+  const bool was_to_be_mirrored = options.symmetry != Symmetry::off;
+  options.quads = false;
+  options.symmetry = Symmetry::off;
+  Result<BudgetCage> made = make_budget_cage(model, options, progress.part(0, triangles_made));
+  if (!made) {
+    return made;
+  }
+  if (was_to_be_mirrored) {
+    made->why_not_mirrored = "cages of quads are not mirrored yet";
+  }
+  Stopwatch watch(made->times);
+  QuadOptions quad_options = options.quad_options;
+  quad_options.clearance = made->clearance;
+  quad_options.square = options.improve.square;
+  quad_options.shape = options.improve.shape;
+  Result<Quadrangulated> quads =
+      make_quads(made->cage, model, quad_options, progress.part(triangles_made, improved));
+  if (!quads) {
+    return quads.error();
+  }
+  watch.lap("quads");
+  const Result<ValidityReport> validity =
+      validate_cage(quads->cage, model, {.first_only = true}, progress.part(improved, 1));
+  if (!validity) {
+    return validity.error();
+  }
+  if (!validity->valid()) {
+    return not_valid(*validity);
+  }
+  watch.lap("check");
+  made->cage = to_triangle_mesh(quads->cage);
+  made->polygons = std::move(quads->cage);
+  made->quads = quads->report;
+  return made;
+}
+
 } // namespace
 
 Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& asked,
                                     const Progress& progress) {
+  if (asked.quads) {
+    return make_quad_cage(model, asked, progress);
+  }
   if (asked.max_gap != 0) {
     if (const Status can = can_keep_gap(asked.max_gap, asked.improve.clearance); !can) {
       return can.error();

@@ -4,6 +4,7 @@
 
 #include "cage/generate.h"
 #include "improve/improve.h"
+#include "quads/quads.h"
 #include "symmetry/half.h"
 
 #include <optional>
@@ -40,10 +41,19 @@ struct BudgetCageOptions {
   /// would meet or lie one within another, or that are too small for the budget, are joined.
   GenerateOptions boxes = {};
   Symmetry symmetry = Symmetry::off; ///< not with max_gap or Pieces::apart
+  /// Quads where they can be; not with max_gap or Pieces::apart, and not mirrored. The budget
+  /// of faces is that of the triangles they are made of. The clearance and the objective are those
+  /// of `improve`.
+  bool quads = false;
+  QuadOptions quad_options = {};
 };
 
 struct BudgetCage {
   TriangleMesh cage; ///< valid in the sense of validate_cage(), on exactly these coordinates
+  /// With quads: what is written. `cage` is triangulate() of it, but it is valid, and keeps the
+  /// clearance, along any choice of diagonals.
+  std::optional<PolygonMesh> polygons;
+  std::optional<QuadReport> quads;
   ImproveReport report;
   double clearance = 0; ///< that the improvement kept: less than asked for if the boxes came nearer
   double clearance_asked = 0;

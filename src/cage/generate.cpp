@@ -1,9 +1,12 @@
 #include "cage/generate.h"
 
 #include "cage/unite.h"
+#include "mesh/triangulate.h"
+#include "quads/quads.h"
 #include "validate/validate_cage.h"
 
 #include <array>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -69,6 +72,45 @@ Result<TriangleMesh> cage_of(const std::vector<Hexahedron>& solids, double separ
   return cage;
 }
 
+/// Quads that would make the cage invalid along their other diagonal are left as triangles.
+PolygonMesh with_quads(const TriangleMesh& cage, TriangleView model, bool allow_pieces) {
+  PolygonMesh faces = pair_coplanar(cage);
+  constexpr int attempts = 8;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    const Result<ValidityReport> report = validate_cage(
+        faces, model, {.allow_pieces = allow_pieces, .max_listed = faces.face_count()});
+    if (!report) {
+      break;
+    }
+    if (report->valid()) {
+      return faces;
+    }
+    std::vector<char> at_fault(faces.face_count(), 0);
+    for (const Violation& violation : report->violations) {
+      if (violation.kind == ViolationKind::face_contact) {
+        at_fault[violation.elements[1]] = 1;
+      } else if (violation.kind == ViolationKind::self_intersection) {
+        at_fault[violation.elements[0]] = at_fault[violation.elements[1]] = 1;
+      } else if (violation.kind == ViolationKind::degenerate_face) {
+        at_fault[violation.elements[0]] = 1;
+      }
+    }
+    PolygonMesh next;
+    next.positions = faces.positions;
+    for (std::size_t f = 0; f < faces.face_count(); ++f) {
+      const std::span<const Index> face = faces.face(f);
+      if (at_fault[f] != 0 && face.size() == 4) {
+        next.add_face({face[0], face[1], face[2]});
+        next.add_face({face[0], face[2], face[3]});
+      } else {
+        next.add_face(face);
+      }
+    }
+    faces = std::move(next);
+  }
+  return PolygonMesh(cage);
+}
+
 } // namespace
 
 Result<GeneratedCage> generate_cage(TriangleView model, const GenerateOptions& options,
@@ -102,6 +144,13 @@ Result<GeneratedCage> generate_cage(TriangleView model, const GenerateOptions& o
                 options.boxes.pieces == Pieces::apart, watch, progress.part(registered, 1));
     if (cage) {
       made.cage = std::move(*cage);
+      made.faces = options.quads
+                       ? with_quads(made.cage, model, options.boxes.pieces == Pieces::apart)
+                       : PolygonMesh(made.cage);
+      if (options.quads) {
+        made.cage = to_triangle_mesh(made.faces);
+        watch.lap("quads");
+      }
       return made;
     }
     why = cage.error();

@@ -7,6 +7,7 @@
 #include "cage/stage_time.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "mesh/polygon_mesh.h"
 #include "mesh/triangle_mesh.h"
 
 #include <vector>
@@ -16,10 +17,12 @@ namespace cagewright {
 struct GenerateOptions {
   DecomposeOptions boxes = {};
   bool registration = true; ///< join the faces of neighbouring boxes where they fit
+  bool quads = false;       ///< make quads of pairs of triangles in one plane
 };
 
 struct GeneratedCage {
   TriangleMesh cage; ///< valid in the sense of validate_cage(), on exactly these coordinates
+  PolygonMesh faces; ///< what is written: `cage`, or with quads; valid along either diagonal
   BoxDecomposition boxes;
   std::vector<int> leaves;      ///< nodes of the tree whose boxes the cage was made of
   Registration registration;    ///< the solids that were united, in grid coordinates
