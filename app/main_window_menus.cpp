@@ -175,8 +175,13 @@ void MainWindow::make_edit_menu() {
 void MainWindow::add_action(QMenu* menu, CageAction action, const QString& text,
                             const QKeySequence& keys, const QString& tip) {
   const QByteArray name = "cage_action_" + QByteArray::number(static_cast<int>(action));
-  QAction* made = add_in_view(menu, name.constData(), text, keys, tip,
-                              [this, action] { perform(action, session_.editor()); });
+  QAction* made = add_in_view(menu, name.constData(), text, keys, tip, [this, action] {
+    if (action == CageAction::extrude) {
+      viewport_->extrude(); // and goes on with moving
+    } else {
+      perform(action, session_.editor());
+    }
+  });
   needs_.push_back({made, [this, action] {
                       const Document& document = session_.document();
                       return document.has_cage() &&
@@ -342,7 +347,9 @@ void MainWindow::show_keys() {
       this, tr("Keys and Mouse"),
       tr("<table cellpadding='2'>"
          "<tr><td><b>Middle button</b></td><td>orbit; with Shift pan; the wheel zooms</td></tr>"
-         "<tr><td><b>Click</b></td><td>select; Shift adds; drag for a box</td></tr>"
+         "<tr><td><b>Click</b></td><td>select; Shift adds; drag for a box, with Ctrl for a "
+         "lasso</td></tr>"
+         "<tr><td><b>Double click</b></td><td>select a loop of edges, or a ring of faces</td></tr>"
          "<tr><td><b>1 2 3</b></td><td>vertices, edges, faces</td></tr>"
          "<tr><td><b>G R S</b></td><td>move, rotate, scale; then X Y Z for an axis, or a number; "
          "Enter or click to end, Escape to cancel</td></tr>"

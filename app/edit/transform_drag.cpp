@@ -75,7 +75,7 @@ void TransformDrag::cancel() {
 // ---------------------------------------------------------------- keys
 
 AxesKind TransformDrag::other_axes() const {
-  return scene_.axes == AxesKind::world ? AxesKind::local : AxesKind::world;
+  return scene_.axes == AxesKind::local ? AxesKind::world : AxesKind::local;
 }
 
 void TransformDrag::confine(int axis, bool plane) {

@@ -926,6 +926,20 @@ void Viewport::begin_transform(TransformKind kind, Handle handle) {
   update();
 }
 
+void Viewport::extrude() {
+  if (!perform(CageAction::extrude, editor_)) {
+    return;
+  }
+  begin_transform(TransformKind::translate);
+  if (drag_.is_active()) { // along z of the local frame, which is the normal
+    drag_.key('z');
+    if (document_.tools().axes != AxesKind::local) {
+      drag_.key('z');
+    }
+    update_caption();
+  }
+}
+
 void Viewport::apply_drag() {
   const std::vector<Vec3> all = target_.moved(drag_.transform());
   std::vector<Vec3> positions;
@@ -1161,16 +1175,7 @@ bool Viewport::edit_key(QKeyEvent* event) {
   case Qt::Key_X:
     return does(CageAction::remove);
   case Qt::Key_E:
-    if (perform(CageAction::extrude, editor_)) {
-      begin_transform(TransformKind::translate);
-      if (drag_.is_active()) { // along the normal: z of the local frame
-        drag_.key('z');
-        if (document_.tools().axes != AxesKind::local) {
-          drag_.key('z');
-        }
-        update_caption();
-      }
-    }
+    extrude();
     return true;
   case Qt::Key_B:
     box_armed_ = document_.has_cage();

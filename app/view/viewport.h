@@ -57,6 +57,8 @@ public:
   [[nodiscard]] bool transforming() const { return drag_.is_active(); }
   /// Starts one as by a key, with the mouse where it is.
   void begin_transform(TransformKind kind, Handle handle = Handle::none);
+  /// Extrudes the selected faces, and goes on with moving them along their normal.
+  void extrude();
 
 Q_SIGNALS:
   void cameraChanged();
