@@ -12,6 +12,7 @@ namespace cagewright {
 namespace {
 
 constexpr std::size_t tile_points = FloatWeights::tile_points;
+constexpr std::size_t block_points = CompactWeights::block_tiles * tile_points;
 constexpr double largest = 32767;
 
 std::size_t block_count(const CompactWeights& weights) {
@@ -62,24 +63,23 @@ Result<SolvedCompactWeights> solve_compact(const MeanValueSolver& solver,
   std::mutex reporting;
   std::size_t finished = 0;
   parallel_for(0, blocks, 1, [&](std::size_t block) {
-    const std::size_t first = block * CompactWeights::block_tiles;
-    const std::size_t tiles =
-        std::min(CompactWeights::block_tiles, solved.weights.tile_count() - first);
-    AlignedBuffer<float> exact(tiles * tile_size);
+    const std::size_t first = block * block_points;
+    const std::size_t count = std::min(block_points, points.size() - first);
+    FloatWeights exact(count, solver.cage_vertices());
     int on_surface = 0;
     int undefined = 0;
-    for (std::size_t t = 0; t < tiles; ++t) {
+    for (std::size_t i = 0; i < count; i += 16) {
       if (progress.cancelled()) {
         return;
       }
-      const std::size_t begin = (first + t) * tile_points;
       const TileReport report =
-          solver.solve(points.subspan(begin, std::min(tile_points, points.size() - begin)),
-                       exact.span().subspan(t * tile_size, tile_size));
+          solver.solve(points.subspan(first + i, std::min<std::size_t>(16, count - i)),
+                       exact.from(i), tile_points);
       on_surface += std::popcount(report.on_surface);
       undefined += std::popcount(report.undefined);
     }
-    round_block(block, exact.span(), solved.weights);
+    exact.fill_up();
+    round_block(block, {exact.tile(0).data(), exact.tile_count() * tile_size}, solved.weights);
     const std::scoped_lock lock(reporting);
     solved.on_surface += static_cast<std::size_t>(on_surface);
     solved.undefined += static_cast<std::size_t>(undefined);

@@ -15,13 +15,13 @@
 namespace cagewright {
 
 /// Weights as 16-bit multiples of a step, one for each cage vertex in each block of 1024 points:
-/// weight(p, c) = tiles.at(p, c) * steps_of_tile(p / 16)[c].
+/// weight(p, c) = tiles.at(p, c) * steps_of_tile(p / 512)[c].
 ///
 /// Meant for displacements (rest position + sum of weight times displacement), where a cage at rest
 /// leaves the model exactly where it is. Half-precision floats would take the same memory, and err
 /// eight times as much on the weights that matter, the large ones.
 struct CompactWeights {
-  static constexpr std::size_t block_tiles = 64; ///< tiles that share their steps
+  static constexpr std::size_t block_tiles = 2; ///< tiles that share their steps
 
   WeightTiles<std::int16_t> tiles;
   std::vector<double> steps; ///< C for each block

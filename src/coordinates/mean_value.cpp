@@ -348,18 +348,21 @@ PointTile<T> load_points(const MeanValueSolver::Tables& cage, std::span<const Ve
   return tile;
 }
 
+/// The weights of sixteen points, of which only so many count: the others become 0.
 template <class T, class Out>
-TileReport solve_tile(const MeanValueSolver::Tables& cage, std::span<const Vec3> points,
-                      std::span<Out> tile) {
-  if (points.empty()) {
-    std::ranges::fill(tile, Out(0));
-    return {};
+TileReport solve_some(const MeanValueSolver::Tables& cage, std::span<const Vec3> points,
+                      std::span<Out> weights, std::size_t stride) {
+  assert(points.size() <= 16 && stride >= 16);
+  assert(weights.size() >= (cage.cage_vertices - 1) * stride + 16);
+  TileReport report;
+  if (!points.empty()) {
+    report = mean_value_tile(cage, load_points<T>(cage, points),
+                             WeightsOut<Out>{weights.data(), stride});
   }
-  TileReport report = mean_value_tile(cage, load_points<T>(cage, points), tile.data());
   if (points.size() < 16) {
     for (std::size_t c = 0; c < cage.cage_vertices; ++c) {
-      std::fill(tile.begin() + static_cast<std::ptrdiff_t>(c * 16 + points.size()),
-                tile.begin() + static_cast<std::ptrdiff_t>(c * 16 + 16), Out(0));
+      const std::span<Out> all = weights.subspan(c * stride, 16);
+      std::ranges::fill(all.subspan(points.size()), Out(0));
     }
     const unsigned kept = (1U << points.size()) - 1;
     report.on_surface = static_cast<std::uint16_t>(report.on_surface & kept);
@@ -396,40 +399,42 @@ std::size_t MeanValueSolver::cage_vertices() const {
   return tables_->cage_vertices;
 }
 
-TileReport MeanValueSolver::solve(std::span<const Vec3> points, std::span<double> tile) const {
-  return solve_tile<double>(*tables_, points, tile);
+TileReport MeanValueSolver::solve(std::span<const Vec3> points, std::span<double> weights,
+                                  std::size_t stride) const {
+  return solve_some<double>(*tables_, points, weights, stride);
 }
 
-TileReport MeanValueSolver::solve(std::span<const Vec3> points, std::span<float> tile) const {
-  return solve_tile<double>(*tables_, points, tile);
+TileReport MeanValueSolver::solve(std::span<const Vec3> points, std::span<float> weights,
+                                  std::size_t stride) const {
+  return solve_some<double>(*tables_, points, weights, stride);
 }
 
-TileReport MeanValueSolver::preview(std::span<const Vec3> points, std::span<float> tile) const {
-  return solve_tile<float>(*tables_, points, tile);
+TileReport MeanValueSolver::preview(std::span<const Vec3> points, std::span<float> weights,
+                                    std::size_t stride) const {
+  return solve_some<float>(*tables_, points, weights, stride);
 }
 
 template <class T>
 Result<SolvedWeights<T>> solve_all(const MeanValueSolver& solver, std::span<const Vec3> points,
                                    const Progress& progress) {
-  constexpr std::size_t tile_points = WeightTiles<T>::tile_points;
   SolvedWeights<T> solved{{points.size(), solver.cage_vertices()}};
   std::mutex reporting;
   std::size_t finished = 0;
-  // Eight tiles, a few hundred microseconds, between two looks at the stop token.
-  constexpr std::size_t block = 8;
-  const std::size_t blocks = (solved.weights.tile_count() + block - 1) / block;
+  // A few hundred microseconds between two looks at the stop token.
+  constexpr std::size_t block = 128;
+  static_assert(WeightTiles<T>::tile_points % block == 0);
+  const std::size_t blocks = (points.size() + block - 1) / block;
   parallel_for(0, blocks, 1, [&](std::size_t b) {
     if (progress.cancelled()) {
       return;
     }
     int on_surface = 0;
     int undefined = 0;
-    const std::size_t end = std::min((b + 1) * block, solved.weights.tile_count());
-    for (std::size_t t = b * block; t < end; ++t) {
-      const std::size_t first = t * tile_points;
+    const std::size_t end = std::min((b + 1) * block, points.size());
+    for (std::size_t first = b * block; first < end; first += 16) {
       const TileReport report =
-          solver.solve(points.subspan(first, std::min(tile_points, points.size() - first)),
-                       solved.weights.tile(t));
+          solver.solve(points.subspan(first, std::min<std::size_t>(16, end - first)),
+                       solved.weights.from(first), WeightTiles<T>::tile_points);
       on_surface += std::popcount(report.on_surface);
       undefined += std::popcount(report.undefined);
     }
@@ -441,6 +446,7 @@ Result<SolvedWeights<T>> solve_all(const MeanValueSolver& solver, std::span<cons
   if (progress.cancelled()) {
     return Error::cancelled();
   }
+  solved.weights.fill_up();
   return solved;
 }
 

@@ -30,7 +30,7 @@ struct MeanValueOptions {
   bool allow_open = false;
 };
 
-/// What became of the points of a tile; bit i speaks of point i.
+/// What became of up to 16 points; bit i speaks of point i.
 struct TileReport {
   std::uint16_t on_surface = 0; ///< within 4e-15 of the cage's diagonal: took the surface's weights
   std::uint16_t undefined = 0;  ///< no weights exist, all are 0 (not finite, or a broken cage)
@@ -48,14 +48,20 @@ public:
 
   [[nodiscard]] std::size_t cage_vertices() const;
 
-  /// The weights of up to 16 points, as a tile of WeightTiles (16 C numbers): computed in double,
-  /// and rounded when stored to float.
-  TileReport solve(std::span<const Vec3> points, std::span<double> tile) const;
-  TileReport solve(std::span<const Vec3> points, std::span<float> tile) const;
+  /// The weights of up to 16 points: weights[c * stride + i] of point i for cage vertex c. Computed
+  /// in double, and rounded when stored to float. Of each 16 numbers those behind the last point
+  /// become 0.
+  /// \param weights  at least (C - 1) stride + 16 numbers
+  /// \param stride   at least 16
+  TileReport solve(std::span<const Vec3> points, std::span<double> weights,
+                   std::size_t stride = 16) const;
+  TileReport solve(std::span<const Vec3> points, std::span<float> weights,
+                   std::size_t stride = 16) const;
 
   /// The same computed in float, several times as fast: for previews. A point reproduced with
   /// these weights errs by less than 1e-5 of the cage's diagonal.
-  TileReport preview(std::span<const Vec3> points, std::span<float> tile) const;
+  TileReport preview(std::span<const Vec3> points, std::span<float> weights,
+                     std::size_t stride = 16) const;
 
   struct Tables; ///< the prepared cage; defined with the implementation
 

@@ -163,13 +163,14 @@ public:
     return (3 * tables.vertices.size() + tables.edges.size()) * lanes;
   }
 
-  template <class Out> void solve(Out* tile, std::size_t first, TileReport& report) {
+  template <class Out>
+  void solve(const WeightsOut<Out>& out, std::size_t first, TileReport& report) {
     measure_vertices();
     measure_edges();
     add_faces();
     put_on_surface();
     share_middles();
-    normalize(tile, first, report);
+    normalize(out, first, report);
   }
 
 private:
@@ -570,7 +571,8 @@ private:
     }
   }
 
-  template <class Out> void normalize(Out* tile, std::size_t first, TileReport& report) {
+  template <class Out>
+  void normalize(const WeightsOut<Out>& out, std::size_t first, TileReport& report) {
     V sum = hn::Zero(d_);
     V size = hn::Zero(d_);
     for (std::size_t i = 0; i < cage_.cage_vertices; ++i) {
@@ -588,7 +590,7 @@ private:
     const V inverse = hn::Div(constant(T(1)), hn::IfThenElse(defined, sum, constant(T(1))));
     for (std::size_t i = 0; i < cage_.cage_vertices; ++i) {
       const V weight = hn::Mul(hn::Load(d_, weight_ + i * lanes), inverse);
-      store(hn::IfThenElseZero(defined, weight), tile + i * 16 + first);
+      store(hn::IfThenElseZero(defined, weight), out.first + i * out.stride + first);
     }
     alignas(64) std::array<T, lanes> flags;
     hn::Store(hn::IfThenElseZero(defined, constant(T(1))), d_, flags.data());
@@ -623,27 +625,27 @@ private:
 
 template <class T, class Out>
 TileReport tile_of(const MeanValueSolver::Tables& cage, const MeanValueTables<T>& tables,
-                   const PointTile<T>& points, Out* tile) {
+                   const PointTile<T>& points, const WeightsOut<Out>& out) {
   using Solver = VectorSolver<T>;
   AlignedBuffer<T> scratch(Solver::scratch_size(tables));
   TileReport report;
   for (std::size_t first = 0; first < 16; first += Solver::lanes) {
-    Solver(cage, tables, points, first, scratch.data()).solve(tile, first, report);
+    Solver(cage, tables, points, first, scratch.data()).solve(out, first, report);
   }
   return report;
 }
 
 TileReport in_double(const MeanValueSolver::Tables& cage, const PointTile<double>& points,
-                     double* tile) {
-  return tile_of(cage, cage.in_double, points, tile);
+                     WeightsOut<double> out) {
+  return tile_of(cage, cage.in_double, points, out);
 }
 TileReport double_to_float(const MeanValueSolver::Tables& cage, const PointTile<double>& points,
-                           float* tile) {
-  return tile_of(cage, cage.in_double, points, tile);
+                           WeightsOut<float> out) {
+  return tile_of(cage, cage.in_double, points, out);
 }
 TileReport in_float(const MeanValueSolver::Tables& cage, const PointTile<float>& points,
-                    float* tile) {
-  return tile_of(cage, cage.in_float, points, tile);
+                    WeightsOut<float> out) {
+  return tile_of(cage, cage.in_float, points, out);
 }
 
 } // namespace
@@ -659,16 +661,16 @@ HWY_EXPORT(double_to_float);
 HWY_EXPORT(in_float);
 
 TileReport mean_value_tile(const MeanValueSolver::Tables& cage, const PointTile<double>& points,
-                           double* tile) {
-  return HWY_DYNAMIC_DISPATCH(in_double)(cage, points, tile);
+                           WeightsOut<double> out) {
+  return HWY_DYNAMIC_DISPATCH(in_double)(cage, points, out);
 }
 TileReport mean_value_tile(const MeanValueSolver::Tables& cage, const PointTile<double>& points,
-                           float* tile) {
-  return HWY_DYNAMIC_DISPATCH(double_to_float)(cage, points, tile);
+                           WeightsOut<float> out) {
+  return HWY_DYNAMIC_DISPATCH(double_to_float)(cage, points, out);
 }
 TileReport mean_value_tile(const MeanValueSolver::Tables& cage, const PointTile<float>& points,
-                           float* tile) {
-  return HWY_DYNAMIC_DISPATCH(in_float)(cage, points, tile);
+                           WeightsOut<float> out) {
+  return HWY_DYNAMIC_DISPATCH(in_float)(cage, points, out);
 }
 
 } // namespace cagewright

@@ -5,6 +5,7 @@
 #include "coordinates/mean_value.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -72,13 +73,18 @@ struct MeanValueSolver::Tables {
 /// Sixteen points, moved and scaled as the cage was.
 template <class T> struct PointTile { alignas(64) std::array<T, 16> x, y, z; };
 
-/// The three variants of the kernel, for the best instruction set of this machine. `tile` takes
-/// 16 C weights.
+/// Where the weights of sixteen points go: those for cage vertex c begin at first[c * stride].
+template <class T> struct WeightsOut {
+  T* first;
+  std::size_t stride;
+};
+
+/// The three variants of the kernel, for the best instruction set of this machine.
 TileReport mean_value_tile(const MeanValueSolver::Tables& cage, const PointTile<double>& points,
-                           double* tile);
+                           WeightsOut<double> out);
 TileReport mean_value_tile(const MeanValueSolver::Tables& cage, const PointTile<double>& points,
-                           float* tile);
+                           WeightsOut<float> out);
 TileReport mean_value_tile(const MeanValueSolver::Tables& cage, const PointTile<float>& points,
-                           float* tile);
+                           WeightsOut<float> out);
 
 } // namespace cagewright

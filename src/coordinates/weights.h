@@ -4,6 +4,7 @@
 
 #include "coordinates/aligned_buffer.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <span>
@@ -11,16 +12,17 @@
 
 namespace cagewright {
 
-/// P points by C cage vertices, in tiles of 16 points.
+/// P points by C cage vertices, in tiles of 512 points.
 ///
-/// A tile holds, for one cage vertex after the other, the weights of its 16 points:
-/// tile(p / 16)[c * 16 + p % 16] is the weight of point p for cage vertex c. Applying the weights
-/// reads memory once and in order, sixteen points at a time in vector registers; moving k cage
-/// vertices reads k cache lines of a tile and leaves the others alone. The last tile is filled up
-/// with rows of zeros.
+/// A tile holds, for one cage vertex after the other, the weights of its 512 points:
+/// tile(p / 512)[c * 512 + p % 512] is the weight of point p for cage vertex c. Applying the
+/// weights reads memory once and in order. Moving k cage vertices reads k runs of 2 kB (of floats)
+/// and leaves the others alone: long enough that the processor fetches little besides, short enough
+/// that the sums under way for a tile stay in its nearest cache. The last tile is filled up with
+/// rows of zeros.
 template <class T> class WeightTiles {
 public:
-  static constexpr std::size_t tile_points = 16;
+  static constexpr std::size_t tile_points = 512;
 
   WeightTiles() = default;
 
@@ -44,6 +46,20 @@ public:
   [[nodiscard]] T at(std::size_t point, std::size_t cage_vertex) const {
     assert(point < points_ && cage_vertex < cage_vertices_);
     return tile(point / tile_points)[cage_vertex * tile_points + point % tile_points];
+  }
+
+  /// Where the weights of points from `point` on begin: those for the next cage vertex are
+  /// tile_points further.
+  [[nodiscard]] std::span<T> from(std::size_t point) {
+    return tile(point / tile_points).subspan(point % tile_points);
+  }
+
+  /// Sets the rows behind the last point to zero.
+  void fill_up() {
+    for (std::size_t used = points_ % tile_points, c = 0; used > 0 && c < cage_vertices_; ++c) {
+      const std::span<T> rest = tile(tile_count() - 1).subspan(c * tile_points + used);
+      std::fill_n(rest.begin(), tile_points - used, T(0));
+    }
   }
 
   /// The C weights of a point, gathered: for looking at, not for speed.

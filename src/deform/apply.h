@@ -18,11 +18,11 @@ namespace cagewright {
 ///
 /// \param cage_vertices  k indices < C
 /// \param displacements  k vectors
-/// \param moved          empty, or for each tile of 16 points the greatest change of a coordinate
-///                       so far: this call's is added
+/// \param moved          empty, or for each 16 points the greatest change of a coordinate so far:
+///                       this call's is added
 ///
 /// On all cores of the calling arena; the result does not depend on their number. No memory is
-/// taken. Cost: bounded by reading k P weights.
+/// taken. Cost: bounded by reading k P weights, and the positions once.
 template <class T>
 void move_points(const WeightTiles<T>& weights, std::span<const Index> cage_vertices,
                  std::span<const Vec3> displacements, std::span<const Vec3> base,
@@ -40,13 +40,10 @@ void move_points(const CompactWeights& weights, std::span<const Index> cage_vert
                  std::span<const Vec3> displacements, std::span<const Vec3> base,
                  std::span<Vec3> positions, std::span<double> moved = {});
 
-/// The same for one tile of weights that is at hand, and up to 16 points.
-template <class T>
-void move_tile(std::span<const T> tile, std::span<const Index> cage_vertices,
-               std::span<const Vec3> displacements, std::span<const Vec3> base,
-               std::span<Vec3> positions);
-
-extern template void move_tile(std::span<const double>, std::span<const Index>,
-                               std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>);
+/// The same for up to 16 points whose weights MeanValueSolver::solve() has just written, 16 for
+/// each of the cage's vertices. At least one of them moves.
+void move_sixteen(std::span<const double> weights, std::span<const Index> cage_vertices,
+                  std::span<const Vec3> displacements, std::span<const Vec3> base,
+                  std::span<Vec3> positions);
 
 } // namespace cagewright

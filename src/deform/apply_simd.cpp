@@ -1,6 +1,8 @@
-// Sums of weights times displacements for tiles of sixteen points, one point to a vector lane.
-// Compiled once for each instruction set (Highway includes this file again and again). Memory is
-// the limit, so that accumulating in double costs nothing.
+// Sums of weights times displacements. Compiled once for each instruction set (Highway includes
+// this file again and again). Memory is the limit, so that accumulating in double costs nothing.
+//
+// Cage vertices are taken four at a time, so that memory is read in long runs: the runs of four of
+// them in a tile, side by side. The sums of the tile's points wait meanwhile in the nearest cache.
 
 #include "deform/apply.h"
 
@@ -31,11 +33,21 @@ struct Moves {
   std::span<const double> steps = {}; // of compact weights, for all of the cage's vertices
 };
 
-/// Where sixteen points come from and go to: x, y and z of each, as Vec3 has them.
-struct TilePoints {
-  const double* base;
-  double* positions;
+/// The weights of some points: those for cage vertex c begin at first[c * stride].
+template <class T> struct WeightsIn {
+  const T* first;
+  const T* next; ///< those of the points after these, to be fetched ahead; or the same again
+  std::size_t stride;
 };
+
+/// Where points come from and go to.
+struct TilePoints {
+  std::span<const Vec3> base;
+  std::span<Vec3> positions;
+  double* moved; ///< for each 16 points, or null
+};
+
+constexpr std::size_t most_points = FloatWeights::tile_points;
 
 } // namespace
 } // namespace cagewright
@@ -50,8 +62,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, 16>;
 using V = hn::VFromD<D>;
 constexpr std::size_t lanes = hn::MaxLanes(D());
-// As many points at once as leave the sums in registers, of which AVX2 has sixteen.
-constexpr std::size_t vectors = std::min<std::size_t>(16 / lanes, 4);
+constexpr std::size_t most_columns = 4;
 
 HWY_INLINE V load(D d, const double* from) {
   return hn::LoadU(d, from);
@@ -64,77 +75,154 @@ HWY_INLINE V load(D d, const std::int16_t* from) {
   return hn::PromoteTo(d, hn::PromoteTo(wide, hn::LoadU(hn::Rebind<std::int16_t, D>(), from)));
 }
 
-/// Moves the points first, first + 1... of a tile, as many as `vectors` registers hold. \returns
-/// the greatest change of each coordinate.
-template <class T>
-HWY_INLINE V move_points_from(const T* tile, std::size_t tile_size, std::size_t first,
-                              const Moves& moves, const TilePoints& points) {
+/// A few cage vertices: their weights, those to be fetched ahead, and how far they move.
+template <class T> struct Columns {
+  std::array<const T*, most_columns> weights;
+  std::array<const T*, most_columns> ahead;
+  std::array<Vec3, most_columns> by;
+};
+
+/// Sixteen points: the sums as x, y and z of each, as Vec3 has them, are added to the base.
+HWY_INLINE double finish(const double* offsets, const double* base, double* positions) {
   const D d;
-  V x[vectors];
-  V y[vectors];
-  V z[vectors];
-  for (std::size_t i = 0; i < vectors; ++i) {
-    x[i] = y[i] = z[i] = hn::Zero(d);
-  }
-  for (std::size_t k = 0; k < moves.cage_vertices.size(); ++k) {
-    const T* weights = tile + std::size_t(moves.cage_vertices[k]) * 16 + first;
-    // The same vertex in the next tile. With few vertices moved the processor does not see the
-    // pattern by itself; beyond the last tile nothing happens.
-    hwy::Prefetch(weights + tile_size);
-    Vec3 by = moves.displacements[k];
-    if constexpr (std::is_integral_v<T>) {
-      by *= moves.steps[moves.cage_vertices[k]];
-    }
-    const V by_x = hn::Set(d, by.x());
-    const V by_y = hn::Set(d, by.y());
-    const V by_z = hn::Set(d, by.z());
-    for (std::size_t i = 0; i < vectors; ++i) {
-      const V w = load(d, weights + i * lanes);
-      x[i] = hn::MulAdd(w, by_x, x[i]);
-      y[i] = hn::MulAdd(w, by_y, y[i]);
-      z[i] = hn::MulAdd(w, by_z, z[i]);
-    }
-  }
   V change = hn::Zero(d);
-  alignas(64) double offsets[3 * vectors * lanes];
-  for (std::size_t i = 0; i < vectors; ++i) {
-    hn::StoreInterleaved3(x[i], y[i], z[i], d, offsets + 3 * i * lanes);
-  }
-  for (std::size_t i = 0; i < 3 * vectors * lanes; i += lanes) {
-    double* const position = points.positions + 3 * first + i;
-    const V before = hn::LoadU(d, position);
-    const V after = hn::Add(hn::LoadU(d, points.base + 3 * first + i), hn::Load(d, offsets + i));
+  for (std::size_t i = 0; i < 48; i += lanes) {
+    const V before = hn::LoadU(d, positions + i);
+    const V after = hn::Add(hn::LoadU(d, base + i), hn::Load(d, offsets + i));
     change = hn::Max(change, hn::Abs(hn::Sub(after, before)));
-    hn::StoreU(after, d, position);
+    hn::StoreU(after, d, positions + i);
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, change));
+}
+
+/// The same for the last points of a model, which are fewer.
+double finish_some(const double* offsets, std::span<const Vec3> base, std::span<Vec3> positions) {
+  alignas(64) std::array<double, 48> from{};
+  alignas(64) std::array<double, 48> to{};
+  for (std::size_t i = 0; i < 3 * base.size(); ++i) {
+    from[i] = base[i / 3][static_cast<Eigen::Index>(i % 3)];
+    to[i] = positions[i / 3][static_cast<Eigen::Index>(i % 3)];
+  }
+  const double change = finish(offsets, from.data(), to.data());
+  for (std::size_t i = 0; i < 3 * base.size(); ++i) {
+    positions[i / 3][static_cast<Eigen::Index>(i % 3)] = to[i];
   }
   return change;
 }
 
-template <class T>
-double move_any(const T* tile, std::size_t tile_size, const Moves& moves,
-                const TilePoints& points) {
-  for (std::size_t i = 48; i < 96; i += 8) { // the points of the next tile
-    hwy::Prefetch(points.base + i);
-    hwy::Prefetch(points.positions + i);
+void finish_points(std::size_t first, const double* offsets, const TilePoints& points) {
+  const std::size_t left = points.base.size() - first;
+  double change = 0;
+  if (left >= 16) {
+    const double* const base = points.base[first].data();
+    double* const positions = points.positions[first].data();
+    for (std::size_t i = 0; i < 48; i += 8) { // some lines ahead; beyond the end nothing happens
+      hwy::Prefetch(base + 192 + i);
+      hwy::Prefetch(positions + 192 + i);
+    }
+    change = finish(offsets, base, positions);
+  } else {
+    change = finish_some(offsets, points.base.subspan(first), points.positions.subspan(first));
   }
-  V change = hn::Zero(D());
-  for (std::size_t first = 0; first < 16; first += vectors * lanes) {
-    change = hn::Max(change, move_points_from(tile, tile_size, first, moves, points));
+  if (points.moved != nullptr) {
+    points.moved[first / 16] += change;
   }
-  return hn::GetLane(hn::MaxOfLanes(D(), change));
 }
 
-double move_double(const double* tile, std::size_t size, const Moves& moves,
-                   const TilePoints& points) {
-  return move_any(tile, size, moves, points);
+/// Adds what `count` cage vertices contribute to the sums of all points of a tile: 16 x, 16 y and
+/// 16 z for each 16 points. The first cage vertices start the sums, the last ones finish the
+/// points.
+template <std::size_t count, class T>
+void add_columns(const Columns<T>& columns, bool is_first, bool is_last, double* sums,
+                 const TilePoints& points) {
+  const D d;
+  V x_by[count];
+  V y_by[count];
+  V z_by[count];
+  for (std::size_t k = 0; k < count; ++k) {
+    x_by[k] = hn::Set(d, columns.by[k].x());
+    y_by[k] = hn::Set(d, columns.by[k].y());
+    z_by[k] = hn::Set(d, columns.by[k].z());
+  }
+  for (std::size_t first = 0; first < points.base.size(); first += 16) {
+    for (std::size_t k = 0; k < most_columns; ++k) {
+      for (std::size_t i = 0; i < 16; i += 64 / sizeof(T)) {
+        hwy::Prefetch(columns.ahead[k] + first + i);
+      }
+    }
+    double* const sum = sums + 3 * first;
+    alignas(64) double offsets[48];
+    for (std::size_t i = 0; i < 16; i += lanes) {
+      V x = is_first ? hn::Zero(d) : hn::Load(d, sum + i);
+      V y = is_first ? hn::Zero(d) : hn::Load(d, sum + 16 + i);
+      V z = is_first ? hn::Zero(d) : hn::Load(d, sum + 32 + i);
+      for (std::size_t k = 0; k < count; ++k) {
+        const V w = load(d, columns.weights[k] + first + i);
+        x = hn::MulAdd(w, x_by[k], x);
+        y = hn::MulAdd(w, y_by[k], y);
+        z = hn::MulAdd(w, z_by[k], z);
+      }
+      if (is_last) {
+        hn::StoreInterleaved3(x, y, z, d, offsets + 3 * i);
+      } else {
+        hn::Store(x, d, sum + i);
+        hn::Store(y, d, sum + 16 + i);
+        hn::Store(z, d, sum + 32 + i);
+      }
+    }
+    if (is_last) {
+      finish_points(first, offsets, points);
+    }
+  }
 }
-double move_float(const float* tile, std::size_t size, const Moves& moves,
-                  const TilePoints& points) {
-  return move_any(tile, size, moves, points);
+
+template <class T>
+void move_any(const WeightsIn<T>& weights, const Moves& moves, const TilePoints& points) {
+  alignas(64) std::array<double, 3 * most_points> sums;
+  const std::size_t total = moves.cage_vertices.size();
+  for (std::size_t begin = 0; begin < total; begin += most_columns) {
+    const std::size_t end = std::min(begin + most_columns, total);
+    const bool is_first = begin == 0;
+    const bool is_last = end == total;
+    Columns<T> columns;
+    for (std::size_t k = 0; k < most_columns; ++k) {
+      const std::size_t here = std::min(begin + k, end - 1);
+      const std::size_t vertex = moves.cage_vertices[here];
+      columns.weights[k] = weights.first + vertex * weights.stride;
+      columns.by[k] = moves.displacements[here];
+      if constexpr (std::is_integral_v<T>) {
+        columns.by[k] *= moves.steps[vertex];
+      }
+      // The next cage vertices, or the first ones of the next points.
+      const std::size_t there = is_last ? std::min(k, total - 1) : std::min(end + k, total - 1);
+      columns.ahead[k] =
+          (is_last ? weights.next : weights.first) + moves.cage_vertices[there] * weights.stride;
+    }
+    switch (end - begin) {
+    case 4:
+      add_columns<4>(columns, is_first, is_last, sums.data(), points);
+      break;
+    case 3:
+      add_columns<3>(columns, is_first, is_last, sums.data(), points);
+      break;
+    case 2:
+      add_columns<2>(columns, is_first, is_last, sums.data(), points);
+      break;
+    default:
+      add_columns<1>(columns, is_first, is_last, sums.data(), points);
+    }
+  }
 }
-double move_fixed(const std::int16_t* tile, std::size_t size, const Moves& moves,
-                  const TilePoints& points) {
-  return move_any(tile, size, moves, points);
+
+void move_double(const WeightsIn<double>& weights, const Moves& moves, const TilePoints& points) {
+  move_any(weights, moves, points);
+}
+void move_float(const WeightsIn<float>& weights, const Moves& moves, const TilePoints& points) {
+  move_any(weights, moves, points);
+}
+void move_fixed(const WeightsIn<std::int16_t>& weights, const Moves& moves,
+                const TilePoints& points) {
+  move_any(weights, moves, points);
 }
 
 } // namespace
@@ -152,54 +240,36 @@ HWY_EXPORT(move_fixed);
 namespace {
 
 // The overloads choose by the type of the weights, and each by the machine.
-double move_whole(std::span<const double> tile, const Moves& moves, const TilePoints& points) {
-  return HWY_DYNAMIC_DISPATCH(move_double)(tile.data(), tile.size(), moves, points);
+void move_some(const WeightsIn<double>& weights, const Moves& moves, const TilePoints& points) {
+  HWY_DYNAMIC_DISPATCH(move_double)(weights, moves, points);
 }
-double move_whole(std::span<const float> tile, const Moves& moves, const TilePoints& points) {
-  return HWY_DYNAMIC_DISPATCH(move_float)(tile.data(), tile.size(), moves, points);
+void move_some(const WeightsIn<float>& weights, const Moves& moves, const TilePoints& points) {
+  HWY_DYNAMIC_DISPATCH(move_float)(weights, moves, points);
 }
-double move_whole(std::span<const std::int16_t> tile, const Moves& moves,
-                  const TilePoints& points) {
-  return HWY_DYNAMIC_DISPATCH(move_fixed)(tile.data(), tile.size(), moves, points);
+void move_some(const WeightsIn<std::int16_t>& weights, const Moves& moves,
+               const TilePoints& points) {
+  HWY_DYNAMIC_DISPATCH(move_fixed)(weights, moves, points);
 }
-
-/// Up to 16 points; a tile that is not full goes through a full one.
-template <class T>
-double move_part(std::span<const T> tile, const Moves& moves, std::span<const Vec3> base,
-                 std::span<Vec3> positions) {
-  if (positions.size() == 16) {
-    return move_whole(tile, moves, {base.data()->data(), positions.data()->data()});
-  }
-  std::array<Vec3, 16> from;
-  std::array<Vec3, 16> to;
-  from.fill(Vec3::Zero());
-  to.fill(Vec3::Zero());
-  std::ranges::copy(base, from.begin());
-  std::ranges::copy(positions, to.begin());
-  const double change = move_whole(tile, moves, {from[0].data(), to[0].data()});
-  std::copy_n(to.begin(), positions.size(), positions.begin());
-  return change;
-}
-
-} // namespace
-
-namespace {
 
 template <class T, class StepsOf>
 void move_all(const WeightTiles<T>& weights, const Moves& moves, std::span<const Vec3> base,
               std::span<Vec3> positions, std::span<double> moved, const StepsOf& steps_of) {
+  constexpr std::size_t tile_points = WeightTiles<T>::tile_points;
   assert(moves.cage_vertices.size() == moves.displacements.size());
   assert(base.size() == weights.points() && positions.size() == weights.points());
-  assert(moved.empty() || moved.size() == weights.tile_count());
-  parallel_for(0, weights.tile_count(), 64, [&](std::size_t t) {
-    const std::size_t first = t * 16;
-    const std::size_t count = std::min<std::size_t>(16, weights.points() - first);
-    const double change =
-        move_part(weights.tile(t), {moves.cage_vertices, moves.displacements, steps_of(t)},
-                  base.subspan(first, count), positions.subspan(first, count));
-    if (!moved.empty()) {
-      moved[t] += change;
-    }
+  assert(moved.empty() || moved.size() == (weights.points() + 15) / 16);
+  if (moves.cage_vertices.empty()) {
+    std::ranges::copy(base, positions.begin());
+    return;
+  }
+  parallel_for(0, weights.tile_count(), 2, [&](std::size_t t) {
+    const std::size_t first = t * tile_points;
+    const std::size_t count = std::min(tile_points, weights.points() - first);
+    const std::size_t next = std::min(t + 1, weights.tile_count() - 1);
+    move_some(WeightsIn<T>{weights.tile(t).data(), weights.tile(next).data(), tile_points},
+              {moves.cage_vertices, moves.displacements, steps_of(t)},
+              {base.subspan(first, count), positions.subspan(first, count),
+               moved.empty() ? nullptr : moved.data() + first / 16});
   });
 }
 
@@ -225,15 +295,13 @@ void move_points(const CompactWeights& weights, std::span<const Index> cage_vert
            [&](std::size_t tile) { return weights.steps_of_tile(tile); });
 }
 
-template <class T>
-void move_tile(std::span<const T> tile, std::span<const Index> cage_vertices,
-               std::span<const Vec3> displacements, std::span<const Vec3> base,
-               std::span<Vec3> positions) {
-  move_part(tile, {cage_vertices, displacements}, base, positions);
+void move_sixteen(std::span<const double> weights, std::span<const Index> cage_vertices,
+                  std::span<const Vec3> displacements, std::span<const Vec3> base,
+                  std::span<Vec3> positions) {
+  assert(base.size() <= 16 && positions.size() == base.size());
+  move_some(WeightsIn<double>{weights.data(), weights.data(), 16}, {cage_vertices, displacements},
+            {base, positions, nullptr});
 }
-
-template void move_tile(std::span<const double>, std::span<const Index>, std::span<const Vec3>,
-                        std::span<const Vec3>, std::span<Vec3>);
 
 } // namespace cagewright
 #endif

@@ -19,7 +19,7 @@ Deformer::Deformer(const PolygonMesh& model, std::span<const Vec3> cage_position
       has_normals_(options.normals) {
   moved_.reserve(cage_.size());
   if (has_normals_) {
-    const std::size_t tiles = (rest_.size() + Weights::tile_points - 1) / Weights::tile_points;
+    const std::size_t tiles = (rest_.size() + 15) / 16;
     tile_travel_.assign(tiles, 0.0);
     tile_is_stale_.assign(tiles, 0);
     normals_ = NormalField(model, slots ? *std::move(slots) : smooth_normals(model),

@@ -26,7 +26,7 @@ std::vector<Vec3> differences(std::span<const Vec3> to, std::span<const Vec3> fr
 Result<StreamedPoses> deform_streaming(const MeanValueSolver& solver, std::span<const Vec3> rest,
                                        std::span<const std::vector<Vec3>> poses,
                                        std::span<const Vec3> points, const Progress& progress) {
-  constexpr std::size_t block = 8 * Weights::tile_points; // between two looks at the stop token
+  constexpr std::size_t block = 128; // between two looks at the stop token
   const std::size_t blocks = (points.size() + block - 1) / block;
   std::vector<Index> all(solver.cage_vertices());
   std::iota(all.begin(), all.end(), Index(0));
@@ -42,18 +42,18 @@ Result<StreamedPoses> deform_streaming(const MeanValueSolver& solver, std::span<
     if (progress.cancelled()) {
       return;
     }
-    AlignedBuffer<double> tile(Weights::tile_points * all.size());
+    AlignedBuffer<double> weights(16 * all.size());
     int on_surface = 0;
     int undefined = 0;
     const std::size_t end = std::min((b + 1) * block, points.size());
-    for (std::size_t first = b * block; first < end; first += Weights::tile_points) {
-      const std::size_t count = std::min(Weights::tile_points, end - first);
-      const TileReport report = solver.solve(points.subspan(first, count), tile.span());
+    for (std::size_t first = b * block; first < end; first += 16) {
+      const std::size_t count = std::min<std::size_t>(16, end - first);
+      const TileReport report = solver.solve(points.subspan(first, count), weights.span());
       on_surface += std::popcount(report.on_surface);
       undefined += std::popcount(report.undefined);
       for (std::size_t pose = 0; pose < poses.size(); ++pose) {
-        move_tile<double>(tile.span(), all, displacements[pose], points.subspan(first, count),
-                          std::span(result.positions[pose]).subspan(first, count));
+        move_sixteen(weights.span(), all, displacements[pose], points.subspan(first, count),
+                     std::span(result.positions[pose]).subspan(first, count));
       }
     }
     const std::scoped_lock lock(reporting);

@@ -16,24 +16,28 @@ namespace {
 constexpr std::int64_t current_version = 1;
 constexpr std::string_view mean_value_kind = "mean_value";
 constexpr std::size_t tile_points = FloatWeights::tile_points;
-constexpr std::size_t block_tiles = 256; // 4096 rows: a few megabytes
+constexpr std::size_t block_tiles = 8; // 4096 rows: a few megabytes
 
-/// Tiles to rows of a matrix, or back.
-void copy_rows(std::span<const float> tile, std::size_t cage_vertices, std::size_t count,
+/// The weights of up to 16 points to rows of a matrix.
+void copy_rows(std::span<const float> weights, std::size_t cage_vertices, std::size_t count,
                float* rows) {
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t c = 0; c < cage_vertices; ++c) {
-      rows[i * cage_vertices + c] = tile[c * tile_points + i];
+      rows[i * cage_vertices + c] = weights[c * 16 + i];
     }
   }
 }
 
+/// Rows of a matrix to a tile.
 void copy_tile(const float* rows, std::size_t cage_vertices, std::size_t count,
                std::span<float> tile) {
   std::fill(tile.begin(), tile.end(), 0.0F);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t first = 0; first < count; first += 16) { // as many rows as stay in the cache
+    const std::size_t end = std::min(first + 16, count);
     for (std::size_t c = 0; c < cage_vertices; ++c) {
-      tile[c * tile_points + i] = rows[i * cage_vertices + c];
+      for (std::size_t i = first; i < end; ++i) {
+        tile[c * tile_points + i] = rows[i * cage_vertices + c];
+      }
     }
   }
 }
@@ -88,14 +92,14 @@ BoundCounts solve_rows(const MeanValueSolver& solver, std::span<const Vec3> poin
                        std::span<float> rows) {
   const std::size_t width = solver.cage_vertices();
   return parallel_reduce_ordered(
-      0, points.size(), 4 * tile_points, BoundCounts(),
+      0, points.size(), 64, BoundCounts(),
       [&](std::size_t begin, std::size_t end) {
-        AlignedBuffer<float> tile(tile_points * width);
+        AlignedBuffer<float> weights(16 * width);
         BoundCounts counts;
-        for (std::size_t first = begin; first < end; first += tile_points) {
-          const std::size_t count = std::min(tile_points, end - first);
-          const TileReport report = solver.solve(points.subspan(first, count), tile.span());
-          copy_rows(tile.span(), width, count, rows.data() + first * width);
+        for (std::size_t first = begin; first < end; first += 16) {
+          const std::size_t count = std::min<std::size_t>(16, end - first);
+          const TileReport report = solver.solve(points.subspan(first, count), weights.span());
+          copy_rows(weights.span(), width, count, rows.data() + first * width);
           counts.on_surface += static_cast<std::size_t>(std::popcount(report.on_surface));
           counts.undefined += static_cast<std::size_t>(std::popcount(report.undefined));
         }
@@ -207,7 +211,7 @@ Result<FloatWeights> read_matrix(NpzReader& file, std::size_t cage_vertices) {
         !s) {
       return s.error();
     }
-    parallel_for(0, tiles, 8, [&](std::size_t t) {
+    parallel_for(0, tiles, 1, [&](std::size_t t) {
       copy_tile(rows.data() + t * tile_points * cage_vertices, cage_vertices,
                 std::min(tile_points, count - t * tile_points), weights.tile(first + t));
     });

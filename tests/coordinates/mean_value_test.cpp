@@ -466,13 +466,13 @@ TEST(MeanValueBinding, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(MeanValueBinding, FillsTheLastTileWithZeros) {
-  const Result<Weights> weights = mean_value_coordinates(make_cube(), many_points(19));
+  const Result<Weights> weights = mean_value_coordinates(make_cube(), many_points(515));
   ASSERT_TRUE(weights);
   ASSERT_EQ(weights->tile_count(), 2U);
   for (std::size_t c = 0; c < 8; ++c) {
-    EXPECT_NE(weights->tile(1)[c * 16 + 2], 0);
-    for (std::size_t i = 3; i < 16; ++i) {
-      EXPECT_EQ(weights->tile(1)[c * 16 + i], 0);
+    EXPECT_NE(weights->tile(1)[c * 512 + 2], 0);
+    for (std::size_t i = 3; i < 512; ++i) {
+      EXPECT_EQ(weights->tile(1)[c * 512 + i], 0);
     }
   }
 }

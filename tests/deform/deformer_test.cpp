@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(AllStorages, DeformerWith,
                          });
 
 TEST(Deformer, TakesMemoryAsItsStorageSays) {
-  const std::size_t numbers = (800 / 16) * 16 * 60;
+  const std::size_t numbers = (2 * 512) * 60;
   EXPECT_EQ(bound({.storage = WeightStorage::full}).weight_bytes(), numbers * 8);
   EXPECT_EQ(bound({.storage = WeightStorage::single}).weight_bytes(), numbers * 4);
   EXPECT_EQ(bound({.storage = WeightStorage::compact}).weight_bytes(), numbers * 2);
@@ -270,7 +270,7 @@ TEST(CompactWeights, AreRoundedBlockByBlockToHalfAStep) {
   EXPECT_EQ(compact->weights.steps, same.steps);
   ASSERT_EQ(same.steps.size(), 4 * cage().positions.size());
   for (std::size_t p = 0; p < model.positions.size(); ++p) {
-    const std::span<const double> steps = same.steps_of_tile(p / 16);
+    const std::span<const double> steps = same.steps_of_tile(p / 512);
     for (std::size_t c = 0; c < steps.size(); ++c) {
       ASSERT_EQ(compact->weights.tiles.at(p, c), same.tiles.at(p, c));
       ASSERT_LE(std::abs(same.tiles.at(p, c) * steps[c] - exact->weights.at(p, c)),
