@@ -8,6 +8,7 @@
 #include "mesh/shapes.h"
 
 #include <benchmark/benchmark.h>
+#include <hwy/cache_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -48,17 +49,26 @@ void count_bytes(benchmark::State& state, std::size_t bytes) {
   state.SetBytesProcessed(static_cast<std::int64_t>(bytes) * state.iterations());
 }
 
-/// The yardstick: the same bytes, only read and summed.
+/// The yardstick: the same bytes, only read and summed; four runs of 2 kB side by side, the next
+/// ones fetched ahead, which is the quickest way of reading found here.
 void read_all(const FloatWeights& w, std::span<double> sums) {
+  constexpr std::size_t run = 512;
   parallel_for(0, w.tile_count(), 2, [&](std::size_t t) {
     const std::span<const float> tile = w.tile(t);
-    std::array<float, 32> sum{}; // as many as stay in registers
-    for (std::size_t i = 0; i + 32 <= tile.size(); i += 32) {
-      for (std::size_t k = 0; k < 32; ++k) {
-        sum[k] += tile[i + k];
+    std::array<float, 16> sum{};
+    std::size_t begin = 0;
+    for (; begin + 4 * run <= tile.size(); begin += 4 * run) {
+      for (const float* line = &tile[begin]; line != &tile[begin] + run; line += 16) {
+        for (std::size_t side = 0; side < 4 * run; side += run) {
+          hwy::Prefetch(line + side + 4 * run);
+          for (std::size_t k = 0; k < 16; ++k) {
+            sum[k] += line[side + k];
+          }
+        }
       }
     }
-    sums[t] = std::accumulate(sum.begin(), sum.end(), 0.0);
+    sums[t] = std::accumulate(tile.begin() + static_cast<std::ptrdiff_t>(begin), tile.end(),
+                              std::accumulate(sum.begin(), sum.end(), 0.0));
   });
 }
 

@@ -3,6 +3,7 @@
 Called as: deform_test.py PROGRAM [unittest arguments]
 """
 
+import json
 import pathlib
 import struct
 import subprocess
@@ -34,6 +35,45 @@ o boxes
 def cage(move=lambda x, y, z: (x, y, z), faces=QUADS):
     text = "".join("v {} {} {}\n".format(*move(x, y, z)) for x, y, z in CORNERS)
     return text + "".join("f " + " ".join(map(str, face)) + "\n" for face in faces)
+
+
+def box_glb(normals=24):
+    """A box of six quads, four vertices to each, under a node that scales and moves it."""
+    positions, directions, indices = [], [], []
+    for face in QUADS:
+        a, b, c = (CORNERS[face[i] - 1] for i in (0, 1, 2))
+        u, v = [b[i] - a[i] for i in range(3)], [c[i] - b[i] for i in range(3)]
+        n = [(u[i - 2] * v[i - 1] - u[i - 1] * v[i - 2]) / 4 for i in range(3)]
+        first = len(positions)
+        positions += [CORNERS[i - 1] for i in face]
+        directions += [n] * 4
+        indices += [first, first + 1, first + 2, first, first + 2, first + 3]
+    binary = b"".join(struct.pack("<3f", *row) for row in positions + directions) + \
+        struct.pack("<36H", *indices)
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "box", "mesh": 0, "scale": [0.5, 0.5, 0.5],
+                   "translation": [0.125, 0, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2,
+                                    "material": 0}]}],
+        "materials": [{"name": "red"}], "buffers": [{"byteLength": len(binary)}],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 288},
+                        {"buffer": 0, "byteOffset": 288, "byteLength": 288},
+                        {"buffer": 0, "byteOffset": 576, "byteLength": 72}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 24, "type": "VEC3",
+                       "min": [-1, -1, -1], "max": [1, 1, 1]},
+                      {"bufferView": 1, "componentType": 5126, "count": normals, "type": "VEC3"},
+                      {"bufferView": 2, "componentType": 5123, "count": 36, "type": "SCALAR"}]}
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    return struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + \
+        struct.pack("<I4s", len(text), b"JSON") + text + \
+        struct.pack("<I4s", len(binary), b"BIN\0") + binary
+
+
+def parts_of_glb(data):
+    size = struct.unpack_from("<I", data, 12)[0]
+    return json.loads(data[20:20 + size]), data[28 + size:]
 
 
 def run(*arguments):
@@ -132,6 +172,104 @@ class Deform(InAFolder):
         done = run("deform", self.model, self.rest, self.pose, "-o", self.folder / "out.off")
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertTrue((self.folder / "out.off").read_text().split()[1:3], ["16", "12"])
+
+    def test_deforms_glb_in_place(self):
+        model, out = self.folder / "box.glb", self.folder / "out.glb"
+        model.write_bytes(box_glb())
+        turned = self.file("turned.obj", cage(lambda x, y, z: (-y, x + 2, z)))
+        done = run("deform", model, self.rest, turned, "-o", out)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        before, old = parts_of_glb(model.read_bytes())
+        after, new = parts_of_glb(out.read_bytes())
+        for name in set(before) - {"accessors"}:
+            self.assertEqual(before[name], after[name])
+        self.assertEqual(new[576:], old[576:])  # faces
+        old, new = struct.unpack("<144f", old[:576]), struct.unpack("<144f", new[:576])
+        for i in range(0, 72, 3):
+            x, y, z = (0.5 * old[i] + 0.125, 0.5 * old[i + 1], 0.5 * old[i + 2])
+            scene = (0.5 * new[i] + 0.125, 0.5 * new[i + 1], 0.5 * new[i + 2])
+            self.assert_near([scene], [(-y, x + 2, z)], 1e-6)
+            x, y, z = old[72 + i:75 + i]
+            self.assert_near([new[72 + i:75 + i]], [(-y, x, z)], 1e-6)
+        for axis in range(3):
+            self.assertEqual(after["accessors"][0]["min"][axis], min(new[axis:72:3]))
+            self.assertEqual(after["accessors"][0]["max"][axis], max(new[axis:72:3]))
+
+    def test_binds_glb_as_any_other(self):
+        model, weights = self.folder / "box.glb", self.folder / "w.npz"
+        direct, again = self.folder / "direct.glb", self.folder / "again.glb"
+        model.write_bytes(box_glb())
+        self.assertEqual(run("bind", model, self.rest, "-o", weights).returncode, DONE)
+        for out, more in ((direct, ()), (again, ("--weights", weights))):
+            done = run("deform", model, self.rest, self.pose, "-o", out, *more)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+        one, other = (struct.unpack("<72f", parts_of_glb(path.read_bytes())[1][:288])
+                      for path in (direct, again))
+        self.assert_near([one], [other], 1e-5)
+
+    def test_normals_that_are_broken_stand_in_the_way_only_where_they_are_kept(self):
+        model, out = self.folder / "box.glb", self.folder / "out.glb"
+        model.write_bytes(box_glb(normals=20))
+        done = run("deform", model, self.rest, self.pose, "-o", self.out)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.out.unlink()
+        self.assert_refused(run("deform", model, self.rest, self.pose, "-o", out), BAD_INPUT,
+                            "a normal for each vertex")
+        self.assertFalse(out.exists())
+
+    def test_warns_of_normals_whose_vertices_turn_apart(self):
+        bent = self.file("bent.obj", cage(lambda x, y, z: (x, y, z + x * y)))
+        done = run("deform", self.model, self.rest, bent, "-o", self.out)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("shared by vertices that have turned apart", done.stderr)
+
+    def test_a_sequence_with_a_wrong_frame_writes_nothing(self):
+        self.file("frame_1.obj", cage())
+        self.file("frame_2.obj", MODEL)
+        folder = self.folder / "frames"
+        self.assert_refused(run("deform", self.model, self.rest, self.folder / "frame_*.obj", "-o",
+                                f"{folder}/"), BAD_INPUT, "frame_2.obj has 16 vertices")
+        self.assertEqual(list(folder.glob("*")), [])
+        self.assert_refused(run("deform", self.model, self.rest, self.folder / "frame_1.obj",
+                                self.folder / "frame_3.obj", "-o", f"{folder}/"), BAD_INPUT,
+                            "frame_3.obj")
+        self.assert_refused(run("deform", self.model, self.rest, self.folder / "none_*.obj", "-o",
+                                f"{folder}/"), BAD_INPUT, "no file has such a name")
+
+    def test_says_what_is_wrong_with_a_cage_that_is_none(self):
+        for name, text in (("empty", ""), ("one", "v 0 0 0\n"), ("points", "v 0 0 0\nv 1 0 0\n"),
+                           ("flat", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 3 2 1\n")):
+            none = self.file(name + ".obj", text)
+            for more in ((), ("--strict",)):
+                done = run("deform", self.model, none, none, "-o", self.out, *more)
+                self.assertIn(done.returncode, (COULD_NOT, BAD_INPUT), name)
+                self.assertIn(name + ".obj", done.stderr)
+                self.assertFalse(self.out.exists())
+
+    def test_refuses_points_without_faces(self):
+        points = self.file("points.obj", "v 0 0 0\nv 0.5 0 0\n")
+        self.assert_refused(run("deform", points, self.rest, self.pose, "-o", self.out), BAD_INPUT,
+                            "points.obj: has no faces")
+
+    def test_only_says_when_a_format_has_no_groups(self):
+        self.assertEqual(run("deform", self.model, self.rest, self.rest, "-o",
+                             self.folder / "m.off").returncode, DONE)
+        self.assert_refused(run("deform", self.folder / "m.off", self.rest, self.pose, "-o",
+                                self.folder / "moved.off", "--only", "small"), BAD_INPUT,
+                            "no group 'small', nor any other")
+
+    def test_inverted_cages_move_the_model_too(self):
+        inverted = self.file("inverted.obj", cage(faces=[face[::-1] for face in QUADS]))
+        pose = self.file("moved.obj", cage(lambda x, y, z: (x + 2, y, z),
+                                           [face[::-1] for face in QUADS]))
+        done = run("deform", self.model, inverted, pose, "-o", self.out)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("warning", done.stderr)
+        self.assert_near(rows(self.out, "v"), [[x + 2, y, z] for x, y, z in rows(self.model, "v")],
+                         1e-12)
+        self.out.unlink()
+        self.assert_refused(run("deform", self.model, inverted, pose, "-o", self.out, "--strict"),
+                            COULD_NOT, "not a valid cage")
 
     def test_warns_of_a_cage_that_does_not_fit(self):
         narrow = self.file("narrow.obj", cage(lambda x, y, z: (0.75 * x, y, z)))
