@@ -14,7 +14,7 @@ namespace cagewright {
 namespace {
 
 constexpr double right_angle = std::numbers::pi / 2;
-constexpr std::size_t tile_points = Weights::tile_points;
+constexpr std::size_t tile_points = 16; // at once, as MeanValueSolver takes them
 
 Vec3 bent(const PoseFrame& frame, const Vec3& p) {
   const Vec3 offset = p - frame.center;
