@@ -195,6 +195,27 @@ class Deform(InAFolder):
             self.assertEqual(after["accessors"][0]["min"][axis], min(new[axis:72:3]))
             self.assertEqual(after["accessors"][0]["max"][axis], max(new[axis:72:3]))
 
+    def test_turns_normals_in_big_endian_files(self):
+        turned = self.file("turned.obj", cage(lambda x, y, z: (-y, x, z)))
+        points = [(0, 0, 0.5), (0.5, 0, 0), (0, 0.5, 0)]
+        n = 3 ** -0.5  # of each component of the normal
+        rows_of = b"".join(struct.pack(">6f", *p, n, n, n) for p in points)
+        header = "".join(f"property float {n}\n" for n in ("x", "y", "z", "nx", "ny", "nz"))
+        ply = (f"ply\nformat binary_big_endian 1.0\nelement vertex 3\n{header}element face 1\n"
+               "property list uchar int vertex_indices\nend_header\n").encode()
+        off = b"NOFF BINARY\n" + struct.pack(">3i", 3, 1, 0)
+        for name, begin, end in (("m.ply", ply, struct.pack(">B3i", 3, 0, 1, 2)),
+                                 ("m.off", off, struct.pack(">5i", 3, 0, 1, 2, 0))):
+            model, out = self.folder / name, self.folder / ("out_" + name)
+            model.write_bytes(begin + rows_of + end)
+            done = run("deform", model, self.rest, turned, "-o", out)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            data = out.read_bytes()
+            self.assertEqual((data[:len(begin)], data[-len(end):]), (begin, end))
+            for i, (x, y, z) in enumerate(points):
+                row = struct.unpack_from(">6f", data, len(begin) + 24 * i)
+                self.assert_near([row], [(-y, x, z, -n, n, n)], 1e-6)
+
     def test_binds_glb_as_any_other(self):
         model, weights = self.folder / "box.glb", self.folder / "w.npz"
         direct, again = self.folder / "direct.glb", self.folder / "again.glb"
