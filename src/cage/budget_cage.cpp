@@ -78,6 +78,7 @@ Result<Improved> within_gap(TriangleView start, TriangleView model,
   made.gap = result->gap;
   return std::move(result->improved);
 }
+
 constexpr int voxels_for_pieces = 96; // along the longest edge, to tell which pieces are apart
 
 /// One closed surface for the whole model.
@@ -191,32 +192,27 @@ Result<BudgetCage> make_quad_cage(TriangleView model, BudgetCageOptions options,
   return made;
 }
 
-} // namespace
+/// Why a cage with these options is not its own mirror image, though it should be; else nothing.
+std::string why_not_to_mirror(const BudgetCageOptions& options) {
+  if (options.symmetry == Symmetry::off) {
+    return "";
+  }
+  if (options.boxes.boxes.pieces == Pieces::apart) {
+    return "cages in pieces cannot be mirrored yet";
+  }
+  if (options.max_gap > 0) {
+    return "a cage within a greatest gap cannot be mirrored yet";
+  }
+  // It would count on both sides.
+  if (options.symmetry == Symmetry::automatic && !options.improve.density.empty()) {
+    return "a density need not be the same on both sides";
+  }
+  return "";
+}
 
-Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& asked,
-                                    const Progress& progress) {
-  if (asked.quads) {
-    return make_quad_cage(model, asked, progress);
-  }
-  if (asked.max_gap != 0) {
-    if (const Status can = can_keep_gap(asked.max_gap, asked.improve.clearance); !can) {
-      return can.error();
-    }
-  }
-  const bool is_apart = asked.boxes.boxes.pieces == Pieces::apart;
-  const bool can_mirror = !is_apart && !(asked.max_gap > 0);
-  BudgetCageOptions options = asked;
-  if (!can_mirror && asked.symmetry != Symmetry::off) {
-    if (asked.symmetry != Symmetry::automatic) {
-      return Error{ErrorCode::invalid_option,
-                   "a cage within a greatest gap, or in pieces, cannot be mirrored yet; leave out "
-                   "the symmetry, or the other option"};
-    }
-    options.symmetry = Symmetry::off;
-  }
-  if (!is_apart) {
-    return make_one_piece(model, options, progress);
-  }
+/// A closed surface for each group of pieces that are apart.
+Result<BudgetCage> make_all_pieces(TriangleView model, const BudgetCageOptions& options,
+                                   const Progress& progress) {
   if (const Result<UnitFrame> frame = unit_frame(model); !frame) {
     return frame.error();
   }
@@ -245,6 +241,36 @@ Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions&
     return validity.error();
   }
   return validity->valid() ? std::move(made) : not_valid(*validity);
+}
+
+} // namespace
+
+Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& asked,
+                                    const Progress& progress) {
+  if (asked.quads) {
+    return make_quad_cage(model, asked, progress);
+  }
+  if (asked.max_gap != 0) {
+    if (const Status can = can_keep_gap(asked.max_gap, asked.improve.clearance); !can) {
+      return can.error();
+    }
+  }
+  BudgetCageOptions options = asked;
+  const std::string why_not = why_not_to_mirror(asked);
+  if (!why_not.empty()) {
+    if (asked.symmetry != Symmetry::automatic) {
+      return Error{ErrorCode::invalid_option,
+                   why_not + "; leave out the symmetry, or the other option"};
+    }
+    options.symmetry = Symmetry::off;
+  }
+  Result<BudgetCage> made = options.boxes.boxes.pieces == Pieces::apart
+                                ? make_all_pieces(model, options, progress)
+                                : make_one_piece(model, options, progress);
+  if (made && !why_not.empty()) {
+    made->why_not_mirrored = why_not;
+  }
+  return made;
 }
 
 } // namespace cagewright

@@ -80,7 +80,9 @@ TriangleMesh with_image(const Task& task) {
 
 Result<TriangleMesh> half_of_boxes(const Task& task, const BudgetCageOptions& options,
                                    BudgetCage& made, const Progress& progress) {
-  Result<GeneratedCage> boxes = generate_cage(with_image(task), options.boxes, progress);
+  GenerateOptions generate = options.boxes;
+  generate.boxes.clearance = options.improve.clearance;
+  Result<GeneratedCage> boxes = generate_cage(with_image(task), generate, progress);
   if (!boxes) {
     return boxes.error();
   }
