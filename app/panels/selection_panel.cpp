@@ -80,8 +80,10 @@ void SelectionPanel::update_selection() {
   const Selection& selection = document_.selection();
   modes_[static_cast<std::size_t>(selection.mode)]->setChecked(true);
   const bool any = document_.has_cage() && !selection.empty();
-  const QString what = selection.mode == SelectionMode::vertex ? tr("vertices")
-                       : selection.mode == SelectionMode::edge ? tr("edges")
+  const bool one = selection.size() == 1;
+  const QString what = selection.mode == SelectionMode::vertex ? one ? tr("vertex") : tr("vertices")
+                       : selection.mode == SelectionMode::edge ? one ? tr("edge") : tr("edges")
+                       : one ? tr("face")
                                                                : tr("faces");
   summary_->setText(any ? tr("%L1 %2 selected").arg(selection.size()).arg(what)
                         : tr("Nothing is selected"));

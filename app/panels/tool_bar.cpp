@@ -19,8 +19,8 @@ struct Named {
 
 constexpr std::array<Named, 5> tool_names = {
     Named{"tool_box", "Select Box",
-          "Drag a box round what to select (Q). Shift adds, Ctrl removes"},
-    Named{"tool_lasso", "Lasso", "Draw round what to select (L)"},
+          "Drag a box round what to select (B). Shift adds, Shift+Ctrl takes away"},
+    Named{"tool_lasso", "Lasso", "Draw round what to select. With any tool: hold Ctrl"},
     Named{"tool_move", "Move", "Drag the arrows to move the selection. G moves it at once"},
     Named{"tool_rotate", "Rotate", "Drag the rings to turn the selection. R turns it at once"},
     Named{"tool_scale", "Scale", "Drag the handles to scale the selection. S scales it at once"}};
