@@ -141,6 +141,21 @@ ModelSurface::ModelSurface(TriangleView model, double unit)
     : tree(model), diagonal(unit > 0 ? unit : bounding_box(model).diagonal().norm()),
       parts(connected_parts(model)) {}
 
+TriangleMesh with_strays(TriangleView model) {
+  TriangleMesh result{{model.positions.begin(), model.positions.end()},
+                      {model.triangles.begin(), model.triangles.end()}};
+  std::vector<bool> used(model.positions.size(), false);
+  for (const Triangle& t : model.triangles) {
+    used[t[0]] = used[t[1]] = used[t[2]] = true;
+  }
+  for (Index v = 0; v < used.size(); ++v) {
+    if (!used[v]) {
+      result.triangles.push_back({v, v, v});
+    }
+  }
+  return result;
+}
+
 std::optional<ClosestPoints> Guard::too_near(const CageMesh& cage, const Patch& patch) const {
   for (const Triangle& t : patch.added) {
     if (const auto pair = model_->tree.too_near(corners_after(cage, patch, t), clearance_)) {

@@ -45,6 +45,10 @@ struct ModelSurface {
   std::vector<Part> parts;
 };
 
+/// The model with a triangle without extent for every vertex that no triangle uses: it must be
+/// inside the cage too.
+TriangleMesh with_strays(TriangleView model);
+
 /// How far vertices of a half that are not on its plane keep from it, in clearances.
 inline constexpr double plane_gap = 0.5;
 

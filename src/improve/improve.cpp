@@ -46,23 +46,6 @@ ObjectiveWeights weights_for(TriangleView start, TriangleView model, const Impro
   return weights;
 }
 
-// The model with a triangle without extent for every vertex that no triangle uses: it must be
-// inside too.
-TriangleMesh with_strays(TriangleView model) {
-  TriangleMesh result{{model.positions.begin(), model.positions.end()},
-                      {model.triangles.begin(), model.triangles.end()}};
-  std::vector<bool> used(model.positions.size(), false);
-  for (const Triangle& t : model.triangles) {
-    used[t[0]] = used[t[1]] = used[t[2]] = true;
-  }
-  for (Index v = 0; v < used.size(); ++v) {
-    if (!used[v]) {
-      result.triangles.push_back({v, v, v});
-    }
-  }
-  return result;
-}
-
 class Improvement {
 public:
   Improvement(TriangleView start, TriangleView model, const ImproveOptions& options)

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "improve/block_program.h"
+#include "improve/face_terms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,19 +96,15 @@ private:
   [[nodiscard]] Positions moved(const Positions& at, double reach, bool towards_goal) const {
     struct Piece {
       std::vector<BlockConstraint> constraints;
-      std::array<Vec3, 3> gradient{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-      std::array<std::array<Mat3, 3>, 3> hessian;
+      FaceTerms terms;
     };
     std::vector<Piece> pieces(faces_.size());
     parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
       Piece& piece = pieces[i];
-      for (auto& row : piece.hessian) {
-        row.fill(Mat3::Zero());
-      }
       const Corners t = corners(at, faces_[i]);
       add_constraints(faces_[i], t, reach, piece.constraints);
       if (towards_goal) {
-        add_objective(t, piece.gradient, piece.hessian);
+        piece.terms = terms_of(t);
       }
     });
     BlockQuadratic quadratic(living_.size());
@@ -123,10 +120,10 @@ private:
         constraints.push_back(c);
       }
       for (int k = 0; k < 3; ++k) {
-        quadratic.gradient[number_[t[k]]] += scale * unit * pieces[i].gradient[k];
+        quadratic.gradient[number_[t[k]]] += scale * unit * pieces[i].terms.gradient[k];
         for (int m = 0; m <= k; ++m) {
           quadratic.terms.push_back(
-              {number_[t[k]], number_[t[m]], scale * unit * unit * pieces[i].hessian[k][m]});
+              {number_[t[k]], number_[t[m]], scale * unit * unit * pieces[i].terms.hessian[k][m]});
         }
       }
     }
@@ -166,37 +163,14 @@ private:
     return result;
   }
 
-  void add_objective(const Corners& t, std::array<Vec3, 3>& gradient,
-                     std::array<std::array<Mat3, 3>, 3>& hessian) const {
+  [[nodiscard]] FaceTerms terms_of(const Corners& t) const {
+    FaceTerms terms = volume_and_gap(objective_, t, center_);
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
     const double area = normal.norm() / 2;
     if (!(area > 0)) {
-      return;
+      return terms;
     }
     const Vec3 n = normal / (2 * area);
-    double mean = 0;
-    for (int s = 0; s < 6; ++s) {
-      std::array<double, 3> share;
-      for (int k = 0; k < 3; ++k) {
-        const double spread = s < 3 ? 0.5 : -0.25; // three samples near the corners, three opposite
-        share[k] = s % 3 == k ? 1.0 / 3 + 2 * spread / 3 : 1.0 / 3 - spread / 3;
-      }
-      const Vec3 p = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
-      const SurfaceTree::Nearest near = objective_.nearest(p);
-      const double d = near.distance;
-      mean += objective_.gap(near) / 6;
-      if (!(d > 0)) {
-        continue;
-      }
-      const Vec3 u = (p - near.point) / d;
-      const Mat3 outer = area / 6 * objective_.gap_curvature(near) * u * u.transpose();
-      for (int k = 0; k < 3; ++k) {
-        gradient[k] += area / 6 * share[k] * objective_.gap_slope(near) * u;
-        for (int m = 0; m < 3; ++m) {
-          hessian[k][m] += share[k] * share[m] * outer;
-        }
-      }
-    }
     const double x = shape_defect(t);
     const double scaled = 4 * std::numbers::sqrt3 * area;
     const double weight = objective_.shape_weight();
@@ -206,17 +180,17 @@ private:
       const Vec3& b = t[(k + 1) % 3];
       const Vec3& c = t[(k + 2) % 3];
       const Vec3 area_slope = n.cross(c - b) / 2;
-      gradient[k] += (b - center_).cross(c - center_) / 6 + mean * area_slope;
       slope[k] = 2 * (2 * a - b - c) / scaled - (x + good_shape) / area * area_slope;
-      gradient[k] += 2 * weight * x * slope[k];
+      terms.gradient[k] += 2 * weight * x * slope[k];
     }
     for (int k = 0; k < 3 && x > 0; ++k) {
       for (int m = 0; m < 3; ++m) {
         const double springs = (k == m ? 2.0 : -1.0) * 2 * x / scaled;
-        hessian[k][m] +=
+        terms.hessian[k][m] +=
             2 * weight * (springs * Mat3::Identity() + slope[k] * slope[m].transpose());
       }
     }
+    return terms;
   }
 
   // Half spaces that keep the face clear of the model for small moves: one for the highest point
@@ -224,19 +198,16 @@ private:
   // What is on an edge is looked at by one of its two faces, for both.
   void add_constraints(Index f, const Corners& t, double reach,
                        std::vector<BlockConstraint>& constraints) const {
-    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
-    const double length = normal.norm();
-    if (!(length > 0)) {
+    if (!(triangle_area(t) > 0)) {
       return;
     }
-    const Vec3 n = normal / length;
-    const double keep = margin * guard_.clearance();
+    const KeepClear clear{.model = objective_.model().tree,
+                          .keep = margin * guard_.clearance(),
+                          .clearance = guard_.clearance(),
+                          .reach = reach};
     const Triangle& face = cage_.mesh.face(f);
     const Triangle vertices = numbered(face);
-    for (const SurfaceTree::Relief& r :
-         objective_.model().tree.relief(t, cells, -(keep + reach), reach)) {
-      constraints.push_back({vertices, {1 - r.at_b - r.at_c, r.at_b, r.at_c}, n, r.height + keep});
-    }
+    clear.add_triangle(vertices, t, cells, constraints);
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
       const bool alone = cage_.mesh.face_left_of(face[next], face[k]) == no_index;
@@ -245,42 +216,19 @@ private:
           std::array<double, 3> share{};
           share[next] = static_cast<double>(i) / cells;
           share[k] = 1 - share[next];
-          add_nearest(vertices, share, t, keep, reach, constraints);
+          clear.add_point(vertices, share, share[k] * t[k] + share[next] * t[next], constraints);
         }
       }
       if (cage_.mesh.around(face[k]).front() == f) {
         std::array<double, 3> share{};
         share[k] = 1;
-        add_nearest(vertices, share, t, keep, reach, constraints);
+        clear.add_point(vertices, share, t[k], constraints);
       }
-    }
-    if (const auto pair = objective_.model().tree.nearest_to(t, guard_.clearance())) {
-      const double distance = pair->distance;
-      const Vec3 u = distance > 0.01 * keep ? Vec3((pair->on_a - pair->on_b) / distance) : n;
-      constraints.push_back({vertices, barycentric(pair->on_a, t), u, keep - distance});
-    }
-  }
-
-  void add_nearest(const Triangle& vertices, const std::array<double, 3>& share, const Corners& t,
-                   double keep, double reach, std::vector<BlockConstraint>& constraints) const {
-    const Vec3 p = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
-    const SurfaceTree::Nearest near = objective_.model().tree.nearest(p, keep + reach);
-    if (near.distance > 0.01 * keep && std::isfinite(near.distance)) {
-      const Vec3 u = (p - near.point) / near.distance;
-      constraints.push_back({vertices, share, u, keep - near.distance});
     }
   }
 
   [[nodiscard]] Triangle numbered(const Triangle& t) const {
     return {number_[t[0]], number_[t[1]], number_[t[2]]};
-  }
-
-  static std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
-    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-    const double squared = n.squaredNorm();
-    const double a = (t[2] - t[1]).cross(p - t[1]).dot(n) / squared;
-    const double b = (t[0] - t[2]).cross(p - t[2]).dot(n) / squared;
-    return {a, b, 1 - a - b};
   }
 
   // As much of the way from the present positions to the goal as leaves the cage valid: vertices of
