@@ -1,10 +1,11 @@
 #include "app/jobs/work.h"
 
 #include "app/document/binding.h"
+#include "deform/normals.h"
 #include "deform/stream.h"
 #include "deform/weights_file.h"
-#include "io/mesh_format.h"
 #include "io/read_mesh.h"
+#include "io/rewrite_positions.h"
 #include "io/write_mesh.h"
 #include "mesh/triangulate.h"
 #include "mesh/weld.h"
@@ -17,35 +18,6 @@ namespace cagewright::app {
 namespace {
 
 constexpr double most_weight_bytes = 1.5e9;
-
-/// The normals that the model's file stores, ready to follow.
-std::optional<NormalField> stored_normals(const Model& model) {
-  if (model.file_normals.normals.empty()) {
-    return std::nullopt;
-  }
-  // Corners without a normal share a slot of their own, behind the others.
-  const auto none = static_cast<Index>(model.file_normals.normals.size());
-  NormalSlots slots{model.file_normals.of_corner, none + std::size_t{1},
-                    model.file_normals.normals};
-  slots.given.push_back(Vec3::Zero());
-  std::ranges::replace(slots.of_corner, FileNormals::none, none);
-  return NormalField(model.mesh, std::move(slots));
-}
-
-Status write_model(const Model& model, std::span<const Vec3> positions,
-                   std::optional<NormalField>& normals, const std::filesystem::path& path) {
-  if (model.path.empty() || format_of_name(model.path) != format_of_name(path)) {
-    PolygonMesh moved = model.mesh;
-    moved.positions.assign(positions.begin(), positions.end());
-    return write_mesh(moved, path);
-  }
-  if (!normals) {
-    return rewrite_positions(model.path, positions, {}, path);
-  }
-  normals->update(positions);
-  return rewrite_positions(model.path, positions,
-                           normals->normals().first(normals->normals().size() - 1), path);
-}
 
 } // namespace
 
@@ -157,13 +129,19 @@ Status export_models(const Model& model, const PolygonMesh& cage_at_rest,
   if (!moved) {
     return moved.error();
   }
-  std::optional<NormalField> normals = stored_normals(model);
+  NormalField normals;
+  if (const FileNormals& stored = model.file_normals; !stored.normals.empty()) {
+    normals = NormalField(model.mesh, {stored.of_corner, stored.normals.size(), stored.normals});
+  }
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (progress.cancelled()) {
       return Error::cancelled();
     }
     progress(0.8 + 0.2 * static_cast<double>(i) / static_cast<double>(outputs.size()), "writing");
-    if (Status s = write_model(model, moved->positions[i], normals, outputs[i].path); !s) {
+    normals.update(moved->positions[i]);
+    if (Status s = write_moved(model.path, model.mesh, moved->positions[i], normals.normals(),
+                               outputs[i].path);
+        !s) {
       return s;
     }
   }

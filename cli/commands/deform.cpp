@@ -8,7 +8,6 @@
 #include "io/mesh_format.h"
 #include "io/read_mesh.h"
 #include "io/rewrite_positions.h"
-#include "io/write_mesh.h"
 #include "mesh/measures.h"
 
 #include <fmt/format.h>
@@ -18,14 +17,12 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace cagewright::cli {
@@ -231,92 +228,6 @@ void keep_others(std::span<const Vec3> rest, std::span<const Index> chosen,
   positions = std::move(result);
 }
 
-/// The normals that a model file stores, ready to follow.
-std::optional<NormalField> normals_of(const PolygonMesh& model, const FileNormals& stored) {
-  if (stored.normals.empty()) {
-    return std::nullopt;
-  }
-  // Corners without a normal share a slot of their own, behind the others.
-  NormalSlots slots{stored.of_corner, stored.normals.size() + 1, stored.normals};
-  slots.given.push_back(Vec3::Zero());
-  std::ranges::replace(slots.of_corner, FileNormals::none,
-                       static_cast<Index>(stored.normals.size()));
-  return NormalField(model, std::move(slots));
-}
-
-/// Stored normals that several vertices share, where those have turned apart: OBJ files may list a
-/// normal once for a whole flat side.
-class SharedNormals {
-public:
-  SharedNormals(const PolygonMesh& model, const FileNormals& stored) {
-    const std::span<const Index> corners = model.corners();
-    std::map<std::pair<Index, Index>, Index> pairs; // a normal and a vertex
-    NormalSlots slots;
-    for (std::size_t c = 0; c < stored.of_corner.size(); ++c) {
-      const auto [pair, is_new] =
-          pairs.try_emplace({stored.of_corner[c], corners[c]}, static_cast<Index>(pairs.size()));
-      slots.of_corner.push_back(pair->second);
-      if (is_new) {
-        const bool has_normal = stored.of_corner[c] != FileNormals::none;
-        normal_of_pair_.push_back(stored.of_corner[c]);
-        slots.given.push_back(has_normal ? stored.normals[stored.of_corner[c]] : Vec3::Zero());
-      }
-    }
-    std::vector<std::size_t> uses(stored.normals.size(), 0);
-    for (const Index normal : normal_of_pair_) {
-      if (normal != FileNormals::none && ++uses[normal] == 2) {
-        is_shared_ = true;
-      }
-    }
-    if (is_shared_) {
-      slots.count = normal_of_pair_.size();
-      apart_ = NormalField(model, std::move(slots));
-    }
-  }
-
-  /// How many of the normals differ by more than five degrees from what one of their vertices
-  /// would have alone.
-  std::size_t count_torn(std::span<const Vec3> positions, std::span<const Vec3> merged) {
-    if (!is_shared_) {
-      return 0;
-    }
-    apart_.update(positions);
-    std::vector<bool> is_torn(merged.size(), false);
-    for (std::size_t i = 0; i < normal_of_pair_.size(); ++i) {
-      const Index n = normal_of_pair_[i];
-      if (n == FileNormals::none) {
-        continue;
-      }
-      const Vec3& own = apart_.normals()[i];
-      is_torn[n] = is_torn[n] || own.dot(merged[n]) < 0.9962 * own.norm() * merged[n].norm();
-    }
-    return static_cast<std::size_t>(std::count(is_torn.begin(), is_torn.end(), true));
-  }
-
-private:
-  NormalField apart_;
-  std::vector<Index> normal_of_pair_;
-  bool is_shared_ = false;
-};
-
-/// Writes the model with other positions: the same file in all else where the format is the same.
-Status write_model(const std::string& original, const PolygonMesh& model,
-                   std::span<const Vec3> positions, std::optional<NormalField>& normals,
-                   const std::string& output) {
-  if (format_of_name(original) != format_of_name(output)) {
-    PolygonMesh moved = model;
-    moved.positions.assign(positions.begin(), positions.end());
-    return write_mesh(moved, output);
-  }
-  if (!normals) {
-    return rewrite_positions(original, positions, {}, output);
-  }
-  normals->update(positions);
-  const std::span<const Vec3> stored =
-      normals->normals().first(normals->normals().size() - 1); // without the slot for none
-  return rewrite_positions(original, positions, stored, output);
-}
-
 std::string summary(std::span<const Vec3> rest, std::span<const Vec3> positions,
                     const std::string& output) {
   double farthest = 0;
@@ -370,27 +281,18 @@ int run(const Options& options, const Session& session) {
   if (!results) {
     return fail(results.error());
   }
-  std::optional<NormalField> normals = normals_of(meshes->model, *stored_normals);
-  std::optional<SharedNormals> shared;
-  if (normals) {
-    shared.emplace(meshes->model, *stored_normals);
+  NormalField normals;
+  if (!stored_normals->normals.empty()) {
+    normals = NormalField(meshes->model, {stored_normals->of_corner, stored_normals->normals.size(),
+                                          stored_normals->normals});
   }
   for (std::size_t i = 0; i < poses->size(); ++i) {
     keep_others(rest, *chosen, (*results)[i]);
-    if (Status status = write_model(options.binding.model, meshes->model, (*results)[i], normals,
-                                    (*poses)[i].output);
+    normals.update((*results)[i]);
+    if (Status status = write_moved(options.binding.model, meshes->model, (*results)[i],
+                                    normals.normals(), (*poses)[i].output);
         !status) {
       return fail(status.error());
-    }
-    if (normals && format_of_name(options.binding.model) == format_of_name((*poses)[i].output)) {
-      const std::size_t torn = shared->count_torn((*results)[i], normals->normals());
-      if (torn > 0) {
-        fmt::print(stderr,
-                   "cagewright: warning: {}: {} shared by vertices that have turned apart; "
-                   "they get the mean (compute normals anew to be rid of it)\n",
-                   (*poses)[i].output,
-                   torn == 1 ? "1 normal is" : fmt::format("{} normals are", torn));
-      }
     }
     if (!session.quiet) {
       std::fputs(summary(rest, (*results)[i], (*poses)[i].output).c_str(), stdout);

@@ -32,9 +32,9 @@ Vec3 area_vector(std::span<const Vec3> positions, std::span<const Index> face) {
 }
 
 /// Turns `v` as the shortest rotation turns one unit vector into another; leaves it where one of
-/// them is zero.
+/// them is zero, and to the last bit where they are equal.
 Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) {
-  if (from.isZero(0) || to.isZero(0)) {
+  if (from == to || from.isZero(0) || to.isZero(0)) {
     return v;
   }
   const Vec3 axis = from.cross(to);
@@ -63,13 +63,17 @@ NormalField::NormalField(const PolygonMesh& mesh, NormalSlots slots, NormalWeigh
   }
   slot_begins_.assign(slots_.count + 1, 0);
   for (const Index slot : slots_.of_corner) {
-    ++slot_begins_[slot + 1];
+    if (slot != NormalSlots::none) {
+      ++slot_begins_[slot + 1];
+    }
   }
   std::partial_sum(slot_begins_.begin(), slot_begins_.end(), slot_begins_.begin());
-  slot_corners_.resize(corners_.size());
+  slot_corners_.resize(slot_begins_.back());
   std::vector<std::size_t> next(slot_begins_.begin(), slot_begins_.end() - 1);
   for (std::size_t c = 0; c < corners_.size(); ++c) {
-    slot_corners_[next[slots_.of_corner[c]]++] = static_cast<Index>(c);
+    if (const Index slot = slots_.of_corner[c]; slot != NormalSlots::none) {
+      slot_corners_[next[slot]++] = static_cast<Index>(c);
+    }
   }
   face_normals_.assign(mesh.face_count(), Vec3::Zero());
   list_faces_of_tiles();
@@ -156,7 +160,7 @@ void NormalField::find_changed(std::span<const std::uint8_t> moved_tiles) {
     face_changes_[face] = 0;
     for (std::size_t c = face_begins_[face]; c < face_begins_[face + 1]; ++c) {
       const Index slot = slots_.of_corner[c];
-      if (std::exchange(slot_changes_[slot], std::uint8_t(1)) == 0) {
+      if (slot != NormalSlots::none && std::exchange(slot_changes_[slot], std::uint8_t(1)) == 0) {
         changed_slots_.push_back(slot);
       }
     }

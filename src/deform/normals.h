@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,10 @@ enum class NormalWeighting {
 /// Which corners share a normal. Corners of one vertex that do not share theirs meet in a hard
 /// edge; where they do but a file lists them apart (a UV seam), they stay alike.
 struct NormalSlots {
-  std::vector<Index> of_corner; ///< for each corner of the mesh, in order, its slot < count
+  static constexpr Index none = std::numeric_limits<Index>::max();
+
+  std::vector<Index> of_corner; ///< for each corner of the mesh, in order, its slot < count, or
+                                ///< `none`
   std::size_t count = 0;        ///< K
   std::vector<Vec3> given;      ///< K unit normals at rest, or none to compute them
 };

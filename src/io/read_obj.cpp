@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 namespace cagewright {
 namespace {
@@ -115,13 +117,27 @@ private:
     return success();
   }
 
-  // Faces may stand before their normals, so that only the end shows which there are.
+  // Faces may stand before their normals, so that only the end shows which there are. Until then
+  // of_corner counts the lines of normals; from here on a line and a vertex make a normal.
   void finish_normals() {
-    const std::size_t count = normals_->normals.size();
-    for (Index& corner : normals_->of_corner) {
-      corner = corner < count ? corner : FileNormals::none;
+    const std::vector<Vec3> lines = std::exchange(normals_->normals, {});
+    std::unordered_map<std::uint64_t, Index> seen;
+    for (std::size_t c = 0; c < normals_->of_corner.size(); ++c) {
+      Index& corner = normals_->of_corner[c];
+      if (corner >= lines.size()) {
+        corner = FileNormals::none;
+        continue;
+      }
+      const std::uint64_t pair = (std::uint64_t{corner} << 32U) | mesh_.corners()[c];
+      const auto [entry, is_new] =
+          seen.try_emplace(pair, static_cast<Index>(normals_->normals.size()));
+      if (is_new) {
+        normals_->normals.push_back(lines[corner]);
+        normals_->in_file.push_back(corner);
+      }
+      corner = entry->second;
     }
-    if (count == 0) {
+    if (normals_->normals.empty()) {
       normals_->of_corner.clear();
     }
   }

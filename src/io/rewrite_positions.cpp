@@ -10,50 +10,19 @@
 #include "io/read_mesh.h"
 #include "io/readers.h"
 #include "io/rewrite_gltf.h"
+#include "io/rewrite_obj.h"
+#include "io/text_copy.h"
 #include "io/text_cursor.h"
+#include "io/write_mesh.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <optional>
+#include <utility>
 
 namespace cagewright {
 namespace {
-
-/// A copy of a file in which some places are replaced, from front to back.
-class Copy {
-public:
-  explicit Copy(const Source& source) : source_(source) {
-    text_.reserve(source.bytes.size() + source.bytes.size() / 4);
-  }
-
-  /// The bytes [begin, end) of the file become the digits of a number.
-  void replace(std::size_t begin, std::size_t end, double value) {
-    text_.append(source_.bytes.substr(copied_, begin - copied_));
-    append_number(text_, value);
-    copied_ = end;
-  }
-
-  /// The three numbers at the cursor, which the reader has found to be there.
-  void replace_numbers(TextCursor& cursor, const Vec3& values) {
-    for (const double value : values) {
-      cursor.skip_blanks();
-      const std::size_t begin = cursor.offset();
-      cursor.any_number();
-      replace(begin, cursor.offset(), value);
-    }
-  }
-
-  std::string take() && {
-    text_.append(source_.bytes.substr(copied_));
-    return std::move(text_);
-  }
-
-private:
-  Source source_;
-  std::size_t copied_ = 0; // bytes of the file that are done with
-  std::string text_;
-};
 
 struct Geometry {
   std::span<const Vec3> positions;
@@ -62,24 +31,6 @@ struct Geometry {
 
 // All of the following are called with a file that the reader has accepted, and with as many
 // positions as it gave.
-
-std::string rewrite_obj(const Source& source, const Geometry& geometry) {
-  Copy copy(source);
-  TextCursor cursor(source, TextCursor::Backslash::continues);
-  std::size_t vertex = 0;
-  std::size_t normal = 0;
-  for (; cursor.next_word_of_file(); cursor.next_line()) {
-    const std::string_view keyword = cursor.word();
-    if (keyword == "v") {
-      copy.replace_numbers(cursor, geometry.positions[vertex++]);
-    } else if (keyword == "vn" && normal < geometry.normals.size()) {
-      copy.replace_numbers(cursor, geometry.normals[normal++]);
-    } else if (keyword == "o" || keyword == "g") {
-      cursor.rest_of_line(); // a name may end in a backslash
-    }
-  }
-  return std::move(copy).take();
-}
 
 bool has_three_numbers(TextCursor cursor) {
   for (int i = 0; i < 3; ++i) {
@@ -110,7 +61,7 @@ void skip_number(TextCursor& cursor) {
 
 std::string rewrite_off_text(const Source& source, TextCursor cursor, const OffHeader& header,
                              const Geometry& geometry) {
-  Copy copy(source);
+  TextCopy copy(source);
   skip_off_counts(cursor);
   for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
     cursor.next_word_of_file();
@@ -226,7 +177,7 @@ std::string rewrite_stl_binary(const Source& source, const Geometry& geometry) {
 }
 
 std::string rewrite_stl_text(const Source& source, const Geometry& geometry) {
-  Copy copy(source);
+  TextCopy copy(source);
   TextCursor cursor(source);
   const std::span<const Vec3> p = geometry.positions;
   std::size_t vertex = 0;
@@ -298,7 +249,7 @@ std::optional<double> value_of_axis(const Geometry& geometry, std::size_t vertex
 
 std::string rewrite_ply_text(const Source& source, const PlyHeader& header,
                              const Geometry& geometry) {
-  Copy copy(source);
+  TextCopy copy(source);
   walk_ply_vertices(header, PlyText(source, header.end),
                     [&](std::size_t vertex, std::size_t axis, double, PlyType, std::size_t begin,
                         std::size_t end) {
@@ -388,10 +339,11 @@ Result<std::string> rewrite_ply(const Source& source, const Geometry& geometry) 
                             geometry);
 }
 
-Result<std::string> rewrite_as(MeshFormat format, const Source& source, const Geometry& geometry) {
+Result<std::string> rewrite_as(MeshFormat format, const Source& source, const Geometry& geometry,
+                               const FileNormals& stored) {
   switch (format) {
   case MeshFormat::obj:
-    return rewrite_obj(source, geometry);
+    return rewrite_obj(source, geometry.positions, geometry.normals, stored);
   case MeshFormat::off:
     return rewrite_off(source, geometry);
   case MeshFormat::ply:
@@ -425,10 +377,8 @@ bool all_finite(std::span<const Vec3> vectors) {
   return std::all_of(vectors.begin(), vectors.end(), [](const Vec3& v) { return v.allFinite(); });
 }
 
-Result<FileNormals> normals_in(const Source& source, MeshFormat format) {
-  if (format == MeshFormat::obj) {
-    return read_obj_normals(source);
-  }
+/// The normals of a file in which each vertex has its own, or none.
+Result<FileNormals> vertex_normals_in(const Source& source, MeshFormat format) {
   FileNormals result;
   if (format != MeshFormat::ply && format != MeshFormat::off) {
     return result;
@@ -440,11 +390,19 @@ Result<FileNormals> normals_in(const Source& source, MeshFormat format) {
   const std::size_t vertices = mesh->positions.size();
   result.normals = format == MeshFormat::ply ? normals_of_ply(source, vertices)
                                              : normals_of_off(source, vertices);
-  if (!result.normals.empty()) { // each vertex has its own
+  if (!result.normals.empty()) {
     result.of_corner.assign(mesh->corners().begin(), mesh->corners().end());
   }
-  const auto is_wrong = [](const Vec3& normal) { return !normal.allFinite(); };
-  std::ranges::replace_if(result.normals, is_wrong, Vec3(Vec3::Zero()));
+  return result;
+}
+
+Result<FileNormals> normals_in(const Source& source, MeshFormat format) {
+  Result<FileNormals> result =
+      format == MeshFormat::obj ? read_obj_normals(source) : vertex_normals_in(source, format);
+  if (result) {
+    const auto is_wrong = [](const Vec3& normal) { return !normal.allFinite(); };
+    std::ranges::replace_if(result->normals, is_wrong, Vec3(Vec3::Zero()));
+  }
   return result;
 }
 
@@ -487,18 +445,31 @@ Status rewrite_positions(const std::filesystem::path& original, std::span<const 
   if (!vertices) {
     return vertices;
   }
+  FileNormals stored;
   if (!normals.empty()) {
-    const Result<FileNormals> stored = normals_in(source, format);
-    if (!stored) {
-      return stored.error();
+    Result<FileNormals> found = normals_in(source, format);
+    if (!found) {
+      return found.error();
     }
-    const Status same = check_count(source, "normal", stored->normals.size(), normals.size());
+    stored = std::move(*found);
+    const Status same = check_count(source, "normal", stored.normals.size(), normals.size());
     if (!same) {
       return same;
     }
   }
-  const Result<std::string> bytes = rewrite_as(format, source, {positions, normals});
+  const Result<std::string> bytes = rewrite_as(format, source, {positions, normals}, stored);
   return bytes ? write_file_atomically(out, *bytes) : bytes.error();
+}
+
+Status write_moved(const std::filesystem::path& original, const PolygonMesh& mesh,
+                   std::span<const Vec3> positions, std::span<const Vec3> normals,
+                   const std::filesystem::path& out) {
+  if (!original.empty() && format_of_name(original) == format_of_name(out)) {
+    return rewrite_positions(original, positions, normals, out);
+  }
+  PolygonMesh moved = mesh;
+  moved.positions.assign(positions.begin(), positions.end());
+  return write_mesh(moved, out);
 }
 
 } // namespace cagewright

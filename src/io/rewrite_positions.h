@@ -13,13 +13,16 @@
 
 namespace cagewright {
 
-/// The normals that a file stores, in its order, and which corner uses which.
+/// The normals that a file stores, and which corner uses which. OBJ lists equal normals once, for
+/// any number of vertices; here each vertex has its own, so that they can turn apart.
 struct FileNormals {
   static constexpr Index none = std::numeric_limits<Index>::max();
 
-  std::vector<Vec3> normals;    ///< N normals as stored, not made unit; empty if the file has none
+  std::vector<Vec3> normals;    ///< N normals as stored, not made unit; empty if no corner has one
   std::vector<Index> of_corner; ///< for each of PolygonMesh::corners() an index < N, or `none`;
                                 ///< empty if N = 0
+  std::vector<Index> in_file;   ///< OBJ: for each of the N which `vn` of the file it is, from 0;
+                                ///< empty for other formats, which have each in its own place
 };
 
 /// Reads the normals of an OBJ file (a corner's own, so that hard edges are where two corners of
@@ -39,6 +42,9 @@ Result<FileNormals> read_normals(const std::filesystem::path& path);
 /// under its name with .bin, never over a file that the original refers to, and the URI changed;
 /// the one in the original stays. Links to images stay as they are.
 ///
+/// In OBJ a normal whose vertices have turned apart becomes several, one after the other, and the
+/// faces refer to them; where none has, the faces stay as they are.
+///
 /// OBJ, OFF, STL, PLY and glTF. Text gets the shortest digits that read back as the same double;
 /// binary files and the properties of PLY keep their types, and so may round to float. Facet
 /// normals of STL are computed anew.
@@ -52,5 +58,13 @@ Result<FileNormals> read_normals(const std::filesystem::path& path);
 /// position that is not finite).
 Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
                          std::span<const Vec3> normals, const std::filesystem::path& out);
+
+/// Writes the mesh that was read from `original` with other positions: by rewrite_positions() if
+/// `out` is named for the same format, else by write_mesh(), without normals.
+///
+/// Errors: theirs.
+Status write_moved(const std::filesystem::path& original, const PolygonMesh& mesh,
+                   std::span<const Vec3> positions, std::span<const Vec3> normals,
+                   const std::filesystem::path& out);
 
 } // namespace cagewright

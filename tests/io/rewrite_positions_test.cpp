@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <limits>
+#include <random>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,6 +71,66 @@ TEST(RewritePositions, ChangesNormalsWhereTheyAreGiven) {
   const std::string text = rewritten("a.obj", obj, moved, std::vector<Vec3>{{1, 0, 0}, {0, 0, -1}});
   EXPECT_NE(text.find("vn 1 0 0\r\nvn 0 0 -1\r\n"), std::string::npos);
   EXPECT_NE(text.find("vt .5 .50"), std::string::npos);
+}
+
+// A side of two triangles that all share one normal, as programs write them: the first `vn`.
+const std::string side = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                         "vn 0 0 1\nvn 1 0 0 # of nobody\nvn 0 1 0\n"
+                         "f 1//1 2//1 3/7/1\nf -4//-3 3//3 4//99 2 1//-9\n";
+
+TEST(RewritePositions, WritesANormalForEachVertexThatTurnsApart) {
+  const std::vector<Vec3> still = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const std::vector<Vec3> normals = {{0, 0, 1}, {0.5, 0, 1}, {0, 0.5, 1}, {0, 1, 0}};
+  EXPECT_EQ(rewritten("a.obj", side, still, normals),
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+            "vn 0 0 1\nvn 0.5 0 1\nvn 0 0.5 1\nvn 1 0 0 # of nobody\nvn 0 1 0\n"
+            "f 1//1 2//2 3/7/3\nf -4//1 3//5 4//101 2 1//-11\n");
+  // Two that stay equal share a line, and corners are left alone where one line is enough.
+  EXPECT_EQ(rewritten("a.obj", side, still,
+                      std::vector<Vec3>{{0, 0, 1}, {0.5, 0, 1}, {0.5, 0, 1}, {0, 1, 0}}),
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+            "vn 0 0 1\nvn 0.5 0 1\nvn 1 0 0 # of nobody\nvn 0 1 0\n"
+            "f 1//1 2//2 3/7/2\nf -4//1 3//4 4//100 2 1//-10\n");
+  EXPECT_EQ(rewritten("a.obj", side, still,
+                      std::vector<Vec3>{{0, 0, 1}, {0, 1e-9, 1}, {0, 0, 1}, {0, 1, 0}}),
+            side);
+}
+
+// Whatever normals are given: reading the file again gives each corner its own.
+TEST(RewritePositions, GivesEveryCornerTheNormalMeantForIt) {
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> one_of(0, 5);
+  for (int round = 0; round < 200; ++round) {
+    std::ostringstream text;
+    text << "vn 0 0 1\n";
+    for (int v = 0; v < 6; ++v) {
+      text << "v 0 " << v << " 0\nvn 0 1 " << v % 2 << "\n";
+    }
+    for (int f = 0; f < 8; ++f) {
+      text << "f";
+      for (int corner = 0; corner < 3 + f % 3; ++corner) {
+        text << " " << 1 + one_of(random) << "//" << 1 + one_of(random);
+      }
+      text << "\n";
+    }
+    const TemporaryFolder folder;
+    const auto original = folder.add("a.obj", text.str());
+    const Result<FileNormals> before = read_normals(original);
+    ASSERT_TRUE(before);
+    std::vector<Vec3> normals;
+    for (std::size_t i = 0; i < before->normals.size(); ++i) {
+      normals.emplace_back(one_of(random) / 2, one_of(random), 1); // some equal, some not
+    }
+    const Result<PolygonMesh> mesh = read_mesh(original);
+    ASSERT_TRUE(mesh);
+    ASSERT_TRUE(rewrite_positions(original, mesh->positions, normals, folder / "b.obj"));
+    const Result<FileNormals> after = read_normals(folder / "b.obj");
+    ASSERT_TRUE(after) << after.error().message;
+    ASSERT_EQ(after->of_corner.size(), before->of_corner.size());
+    for (std::size_t c = 0; c < before->of_corner.size(); ++c) {
+      EXPECT_EQ(after->normals[after->of_corner[c]], normals[before->of_corner[c]]) << text.str();
+    }
+  }
 }
 
 TEST(RewritePositions, GivesTheFileItselfForItsOwnPositions) {
@@ -188,6 +251,16 @@ TEST(ReadNormals, TellsWhichCornerUsesWhich) {
   EXPECT_EQ(normals->normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}}));
   constexpr Index none = FileNormals::none;
   EXPECT_EQ(normals->of_corner, (std::vector<Index>{0, 1, none, none, none, 0}));
+}
+
+TEST(ReadNormals, GivesEachVertexItsOwnOfASharedOne) {
+  const TemporaryFolder folder;
+  const Result<FileNormals> normals = read_normals(folder.add("a.obj", side));
+  ASSERT_TRUE(normals) << normals.error().message;
+  constexpr Index none = FileNormals::none;
+  EXPECT_EQ(normals->normals, (std::vector<Vec3>{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 1, 0}}));
+  EXPECT_EQ(normals->in_file, (std::vector<Index>{0, 0, 0, 2}));
+  EXPECT_EQ(normals->of_corner, (std::vector<Index>{0, 1, 2, 0, 3, none, none, none}));
 }
 
 TEST(ReadNormals, GivesNoneForAFileWithoutThem) {
