@@ -5,6 +5,7 @@
 #include "deform/normals.h"
 #include "deform/stream.h"
 #include "deform/weights_file.h"
+#include "io/linked_files.h"
 #include "io/mesh_format.h"
 #include "io/read_mesh.h"
 #include "io/rewrite_positions.h"
@@ -241,6 +242,25 @@ std::string summary(std::span<const Vec3> rest, std::span<const Vec3> positions,
                      moved, rest.size(), 100 * farthest / diagonal(rest));
 }
 
+/// Says which files beside the model the written ones refer to in vain.
+void warn_of_links(const std::string& model, const std::vector<Pose>& poses) {
+  std::set<fs::path> told;
+  for (const Pose& pose : poses) {
+    const fs::path folder = fs::path(pose.output).parent_path();
+    if (format_of_name(model) != format_of_name(pose.output) || !told.insert(folder).second) {
+      continue;
+    }
+    for (const fs::path& link : linked_files(model)) {
+      if (!fs::exists(folder / link)) {
+        fmt::print(
+            stderr,
+            "cagewright: warning: {} refers to {}, which is not beside it; copy it from {}\n",
+            pose.output, link.string(), fs::absolute(model).parent_path().string());
+      }
+    }
+  }
+}
+
 int run(const Options& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   const Result<std::vector<Pose>> poses = plan_outputs(options);
@@ -298,6 +318,7 @@ int run(const Options& options, const Session& session) {
       std::fputs(summary(rest, (*results)[i], (*poses)[i].output).c_str(), stdout);
     }
   }
+  warn_of_links(options.binding.model, *poses);
   if (!session.quiet) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     fmt::print("{:.2f} s in all\n", seconds.count());

@@ -1,6 +1,7 @@
 #include "io/gltf_document.h"
 
 #include "io/binary.h"
+#include "io/uri.h"
 
 #include <algorithm>
 #include <cmath>
@@ -150,63 +151,6 @@ Status check_extensions(const Source& source, const Json& json) {
     }
   }
   return success();
-}
-
-// The bytes after "base64,"; none where a character is not one of the 64.
-std::optional<std::string> decode_base64(std::string_view text) {
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  std::uint32_t bits = 0;
-  int count = 0;
-  while (text.ends_with('=')) {
-    text.remove_suffix(1);
-  }
-  for (const char c : text) {
-    std::uint32_t value = 0;
-    if (c >= 'A' && c <= 'Z') {
-      value = static_cast<std::uint32_t>(c - 'A');
-    } else if (c >= 'a' && c <= 'z') {
-      value = static_cast<std::uint32_t>(c - 'a') + 26;
-    } else if (c >= '0' && c <= '9') {
-      value = static_cast<std::uint32_t>(c - '0') + 52;
-    } else if (c == '+' || c == '-') {
-      value = 62;
-    } else if (c == '/' || c == '_') {
-      value = 63;
-    } else {
-      return std::nullopt;
-    }
-    bits = (bits << 6U) | value;
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      bytes.push_back(static_cast<char>((bits >> static_cast<unsigned>(count)) & 0xffU));
-    }
-  }
-  return bytes;
-}
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') {
-    return c - '0';
-  }
-  const char lower = static_cast<char>(c | 0x20);
-  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
-}
-
-// A file name from a URI: "%20" is a blank.
-std::string decode_percent(std::string_view uri) {
-  std::string name;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 &&
-        hex_digit(uri[i + 2]) >= 0) {
-      name.push_back(static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2])));
-      i += 2;
-    } else {
-      name.push_back(uri[i]);
-    }
-  }
-  return name;
 }
 
 // glTF's numbers for the types of components.

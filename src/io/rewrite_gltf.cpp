@@ -4,6 +4,7 @@
 #include "io/binary.h"
 #include "io/gltf_scene.h"
 #include "io/number_text.h"
+#include "io/uri.h"
 
 #include <algorithm>
 #include <array>
@@ -117,43 +118,6 @@ private:
 
   std::string_view text_;
 };
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k) {
-      bits = (bits << 8U) | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text.push_back(k <= count ? digits[(bits >> (18U - 6U * k)) & 63U] : '=');
-    }
-  }
-  return text;
-}
-
-/// Characters that stand for themselves in a URI stay; others become %20 and the like.
-std::string percent_encoded(std::string_view name) {
-  constexpr std::string_view hex = "0123456789ABCDEF";
-  constexpr std::string_view plain = "-._~";
-  std::string uri;
-  for (const char c : name) {
-    const bool is_word = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-    if (is_word || plain.find(c) != plain.npos) {
-      uri.push_back(c);
-    } else {
-      const auto byte = static_cast<unsigned char>(c);
-      uri.push_back('%');
-      uri.push_back(hex[byte >> 4U]);
-      uri.push_back(hex[byte & 15U]);
-    }
-  }
-  return uri;
-}
 
 using Float3 = std::array<float, 3>;
 
@@ -550,11 +514,11 @@ Status write_all(GltfDocument& document, JsonPatch json, const std::set<std::siz
       const std::filesystem::path name = free_name(out, taken);
       taken.push_back(name);
       files.emplace_back(name, *bytes);
-      json.replace("buffers", b, "uri", Json(percent_encoded(name.filename().string())).dump());
+      json.replace("buffers", b, "uri", Json(encode_percent(name.filename().string())).dump());
     } else {
       const std::string uri = to_text(member(buffers[b], "uri"));
       json.replace("buffers", b, "uri",
-                   Json(uri.substr(0, uri.find(',') + 1) + base64(*bytes)).dump());
+                   Json(uri.substr(0, uri.find(',') + 1) + encode_base64(*bytes)).dump());
     }
   }
   for (const auto& [name, bytes] : files) { // first: a file that names them finds them

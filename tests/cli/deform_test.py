@@ -252,6 +252,16 @@ class Deform(InAFolder):
                             "a normal for each vertex")
         self.assertFalse(out.exists())
 
+    def test_says_which_linked_files_are_not_beside_the_result(self):
+        self.file("colors.mtl", "newmtl red\n")
+        done = run("deform", self.model, self.rest, self.pose, "-o", self.out)
+        self.assertEqual((done.returncode, done.stderr), (DONE, ""))
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        done = run("deform", self.model, self.rest, self.pose, "-o", elsewhere / "out.obj")
+        self.assertEqual(done.returncode, DONE)
+        self.assertIn("out.obj refers to colors.mtl, which is not beside it", done.stderr)
+
     def test_normals_shared_at_rest_turn_apart(self):
         bent = self.file("bent.obj", cage(lambda x, y, z: (x, y, z + x * y)))
         done = run("deform", self.model, self.rest, bent, "-o", self.out)
