@@ -28,6 +28,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include <map>
+#include <memory>
 #include <utility>
 
 namespace cagewright::app {
@@ -49,6 +51,26 @@ QDockWidget* dock(QMainWindow* window, const char* name, const QString& title, Q
   }
   window->addDockWidget(area, made);
   return made;
+}
+
+/// Two docks in one place, each as high as it was when it was seen last.
+void share_height(QDockWidget* first, int first_height, QDockWidget* second, int second_height) {
+  const auto heights = std::make_shared<std::map<QDockWidget*, int>>();
+  (*heights)[first] = first_height;
+  (*heights)[second] = second_height;
+  const auto take_turns = [heights](QDockWidget* shown, QDockWidget* other) {
+    QObject::connect(shown, &QDockWidget::visibilityChanged, shown, [=](bool visible) {
+      auto* window = qobject_cast<QMainWindow*>(shown->parentWidget());
+      if (visible && window != nullptr && window->tabifiedDockWidgets(shown).contains(other)) {
+        if (window->isVisible() && other->height() > 0) {
+          heights->at(other) = shown->height(); // as high as the other one was until now
+        }
+        window->resizeDocks({shown}, {heights->at(shown)}, Qt::Vertical);
+      }
+    });
+  };
+  take_turns(first, second);
+  take_turns(second, first);
 }
 
 QString file_of(const QDropEvent& event) {
@@ -144,6 +166,7 @@ void MainWindow::make_panels() {
   setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
   resizeDocks({line}, {110}, Qt::Vertical);
+  share_height(line, 110, sections, 280);
   resizeDocks({figures_dock, select, layers}, {230, 150, 340}, Qt::Vertical);
   connect(generate_, &GeneratePanel::loadCageRequested, this, &MainWindow::choose_cage);
   connect(guide_, &GuideBar::openRequested, this, &MainWindow::choose_model);
@@ -254,6 +277,7 @@ void MainWindow::apply(const Preferences& preferences) {
   const Theme theme = theme_named(preferences.theme);
   apply_theme(*qApp, theme);
   viewport_->set_dark(theme == Theme::dark);
+  viewport_->set_up_axis(preferences.z_up ? UpAxis::z : UpAxis::y);
   sections_->set_dark(theme == Theme::dark);
   welcome_->setStyleSheet(theme == Theme::dark ? "color: #c9ccd1" : "color: #4a4d52");
   recovery_.set_interval(preferences.autosave_seconds);

@@ -80,6 +80,8 @@ private:
                      const std::function<void(const std::filesystem::path&)>& write);
   [[nodiscard]] QString model_filter(bool all) const;
   [[nodiscard]] QString suggested(const QString& suffix, const QString& extension) const;
+  /// For the file dialogs that models are written by.
+  [[nodiscard]] QString export_filter() const;
   void export_model();
   void export_image();
   /// Whether what is open may be replaced: saved, or not worth it.

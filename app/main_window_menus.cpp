@@ -95,17 +95,17 @@ void MainWindow::make_file_menu() {
                           "texture coordinates, groups and materials"),
                        [this] { export_model(); });
   QMenu* more = menu->addMenu(tr("E&xport More"));
-  QAction* poses = add(more, "export_poses", tr("All &Poses..."), {},
-                       tr("A file for each pose, named after it"), [this] {
-                         choose_export(tr("Export Poses"), suggested("-deformed", {}),
-                                       tr("Models (*.obj *.ply *.stl *.off)"),
-                                       [this](const auto& path) { session_.export_poses(path); });
-                       });
+  QAction* poses =
+      add(more, "export_poses", tr("All &Poses..."), {}, tr("A file for each pose, named after it"),
+          [this] {
+            choose_export(tr("Export Poses"), suggested("-deformed", {}), export_filter(),
+                          [this](const auto& path) { session_.export_poses(path); });
+          });
   QAction* sequence =
       add(more, "export_sequence", tr("&Sequence..."), {},
           tr("A file for each frame of the time line"), [this] {
-            choose_export(tr("Export Sequence"), suggested("-sequence", {}),
-                          tr("Models (*.obj *.ply *.stl *.off)"), [this](const auto& path) {
+            choose_export(tr("Export Sequence"), suggested("-sequence", {}), export_filter(),
+                          [this](const auto& path) {
                             bool ok = true;
                             const int step = QInputDialog::getInt(this, tr("Export Sequence"),
                                                                   tr("Write every so many frames"),
@@ -167,9 +167,7 @@ void MainWindow::make_edit_menu() {
   menu->addAction(redo);
   make_select_menu(menu->addMenu(tr("&Select")));
   menu->addSeparator();
-  menu->addActions(tools_->tools()->actions());
-  menu->addSeparator();
-  menu->addActions(tools_->switches());
+  tools_->add_to(menu);
 }
 
 void MainWindow::add_action(QMenu* menu, CageAction action, const QString& text,
@@ -220,6 +218,19 @@ void MainWindow::make_view_menu() {
   orthographic->setCheckable(true);
   connect(viewport_, &Viewport::cameraChanged, orthographic,
           [this, orthographic] { orthographic->setChecked(viewport_->orthographic()); });
+  QAction* z_up =
+      add(menu, "z_up", tr("&Z Is Up"), {},
+          tr("Which way the model stands: Z is up in CAD and Blender, Y elsewhere. Files "
+             "are written as they were read"),
+          [this] {
+            const bool on = viewport_->up_axis() != UpAxis::z;
+            viewport_->set_up_axis(on ? UpAxis::z : UpAxis::y);
+            preferences_.z_up = on;
+            preferences_.save();
+          });
+  z_up->setCheckable(true);
+  connect(viewport_, &Viewport::cameraChanged, z_up,
+          [this, z_up] { z_up->setChecked(viewport_->up_axis() == UpAxis::z); });
   QMenu* standard = menu->addMenu(tr("&Standard Views"));
   const std::pair<QString, const char*> names[] = {{tr("Front"), "front"},
                                                    {tr("Back"), "back"},
@@ -382,15 +393,28 @@ void MainWindow::choose_cage() {
 
 void MainWindow::choose_export(const QString& title, const QString& name, const QString& filter,
                                const std::function<void(const std::filesystem::path&)>& write) {
-  const QString path = QFileDialog::getSaveFileName(this, title, name, filter);
-  if (!path.isEmpty()) {
-    write(path.toStdString());
+  QFileDialog dialog(this, title, QFileInfo(name).path(), filter);
+  dialog.setAcceptMode(QFileDialog::AcceptSave);
+  dialog.setFileMode(QFileDialog::AnyFile);
+  dialog.setDefaultSuffix(QFileInfo(name).suffix()); // for names without an extension
+  dialog.selectFile(QFileInfo(name).fileName());
+  if (dialog.exec() == QDialog::Accepted && !dialog.selectedFiles().isEmpty()) {
+    write(dialog.selectedFiles().first().toStdString());
   }
 }
 
+QString MainWindow::export_filter() const {
+  const QString other = tr("Positions and faces only (*.obj *.ply *.stl *.off)");
+  const Document& document = const_cast<MainWindow*>(this)->session_.document();
+  if (!document.has_model() || document.model()->path.empty()) {
+    return other;
+  }
+  const QString own = QFileInfo(QString::fromStdString(document.model()->path.string())).suffix();
+  return tr("As the model, with all that is in its file (*.%1)").arg(own) + ";;" + other;
+}
+
 void MainWindow::export_model() {
-  choose_export(tr("Export Model"), suggested("-deformed", {}),
-                tr("Models (*.obj *.ply *.stl *.off)"),
+  choose_export(tr("Export Model"), suggested("-deformed", {}), export_filter(),
                 [this](const auto& path) { session_.export_model(path); });
 }
 
@@ -413,16 +437,11 @@ bool MainWindow::save() {
 }
 
 bool MainWindow::save_as() {
-  QString path =
-      QFileDialog::getSaveFileName(this, tr("Save Project"), suggested({}, ".cagewright"),
-                                   tr("Cagewright projects (*.cagewright)"));
-  if (path.isEmpty()) {
-    return false;
-  }
-  if (QFileInfo(path).suffix().isEmpty()) {
-    path += ".cagewright";
-  }
-  return session_.save_project(path.toStdString());
+  bool saved = false;
+  choose_export(tr("Save Project"), suggested({}, ".cagewright"),
+                tr("Cagewright projects (*.cagewright)"),
+                [&](const auto& path) { saved = session_.save_project(path); });
+  return saved;
 }
 
 void MainWindow::show_recent() {

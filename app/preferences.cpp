@@ -24,6 +24,7 @@ Preferences Preferences::load() {
   p.autosave_seconds =
       std::clamp(settings.value("autosave_seconds", p.autosave_seconds).toInt(), 0, 3600);
   p.ask_before_closing = settings.value("ask_before_closing", p.ask_before_closing).toBool();
+  p.z_up = settings.value("z_up", p.z_up).toBool();
   p.hints = settings.value("hints", p.hints).toBool();
   return p;
 }
@@ -33,6 +34,7 @@ void Preferences::save() const {
   settings.setValue("theme", theme);
   settings.setValue("autosave_seconds", autosave_seconds);
   settings.setValue("ask_before_closing", ask_before_closing);
+  settings.setValue("z_up", z_up);
   settings.setValue("hints", hints);
 }
 
@@ -64,6 +66,12 @@ PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* pa
   theme->addItem(tr("Dark"), "dark");
   theme->setCurrentIndex(theme->findData(preferences_.theme));
   form->addRow(tr("Colors"), theme);
+  auto* up = new QComboBox;
+  up->setObjectName("up_axis");
+  up->addItems({tr("Y, as in most programs"), tr("Z, as in Blender and CAD")});
+  up->setCurrentIndex(preferences_.z_up ? 1 : 0);
+  up->setToolTip(tr("How models stand in the view. Files are written as they were read"));
+  form->addRow(tr("Up"), up);
   auto* autosave = new QSpinBox;
   autosave->setRange(0, 3600);
   autosave->setSuffix(tr(" s"));
@@ -81,6 +89,8 @@ PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* pa
   form->addRow(buttons);
   connect(theme, &QComboBox::currentIndexChanged, this,
           [this, theme] { preferences_.theme = theme->currentData().toString(); });
+  connect(up, &QComboBox::currentIndexChanged, this,
+          [this](int at) { preferences_.z_up = at == 1; });
   connect(autosave, &QSpinBox::valueChanged, this,
           [this](int value) { preferences_.autosave_seconds = value; });
   connect(ask, &QCheckBox::toggled, this,

@@ -12,6 +12,7 @@ struct Preferences {
   QString theme = "light";   ///< "light" or "dark"
   int autosave_seconds = 60; ///< 0: never
   bool ask_before_closing = true;
+  bool z_up = false; ///< models stand upright along z, not y
   bool hints = true; ///< the bar with the next step
 
   static Preferences load();

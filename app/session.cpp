@@ -217,11 +217,10 @@ void Session::generate() {
               return; // another one was opened meanwhile
             }
             editor_.replace_cage(made.cage, made.stages, tr("Generate Cage"));
-            Q_EMIT message(made.remark.isEmpty()
-                               ? tr("A valid cage of %L1 vertices").arg(made.cage->positions.size())
-                               : tr("A valid cage of %L1 vertices, larger than asked for: %2")
+            const QString what = tr("A valid cage of %L1 vertices and %L2 faces")
                                      .arg(made.cage->positions.size())
-                                     .arg(made.remark));
+                                     .arg(made.cage->face_count());
+            Q_EMIT message(made.remark.isEmpty() ? what : what + "; " + made.remark);
           });
         });
 }

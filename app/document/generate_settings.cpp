@@ -9,17 +9,20 @@ namespace {
 
 using Group = GenerateOption::Group;
 
-bool always(CageMethod /*method*/) {
+bool always(const GenerateSettings& /*s*/) {
   return true;
 }
-bool with_budget(CageMethod method) {
-  return method != CageMethod::union_of_boxes;
+bool with_budget(const GenerateSettings& s) {
+  return s.method != CageMethod::union_of_boxes;
 }
-bool with_boxes(CageMethod method) {
-  return method != CageMethod::envelope;
+bool with_boxes(const GenerateSettings& s) {
+  return s.method != CageMethod::envelope;
 }
-bool with_envelope(CageMethod method) {
-  return method == CageMethod::envelope;
+bool with_envelope(const GenerateSettings& s) {
+  return s.method == CageMethod::envelope;
+}
+bool with_density_file(const GenerateSettings& s) {
+  return with_budget(s) && s.density == DensitySource::file;
 }
 
 SlicingOptions& slicing(GenerateSettings& s) {
@@ -27,6 +30,13 @@ SlicingOptions& slicing(GenerateSettings& s) {
 }
 const SlicingOptions& slicing(const GenerateSettings& s) {
   return s.options.boxes.boxes.slicing;
+}
+
+bool by_volume(const GenerateSettings& s) {
+  return slicing(s).rule == SlicingRule::volume;
+}
+bool by_jumps(const GenerateSettings& s) {
+  return slicing(s).rule == SlicingRule::published;
 }
 
 QString text(const char* english) {
@@ -55,8 +65,19 @@ std::vector<GenerateOption> basic_options() {
             "follow the model more closely."),
        Group::basic,
        GenerateOption::Integer{
-           4, 5000, [](GenerateSettings& s) -> int& { return s.options.improve.vertices; }, {}},
+           0, 100000, [](GenerateSettings& s) -> int& { return s.options.improve.vertices; },
+           text("no limit")},
        with_budget},
+      {"quads", text("Faces"),
+       text("Quads are easier to select in loops and rings; triangles fit more closely. The cage "
+            "is valid along both diagonals of each quad."),
+       Group::basic,
+       GenerateOption::Choice{
+           {"off", "on"},
+           {text("Triangles"), text("Quads where they can be")},
+           [](const GenerateSettings& s) { return s.options.quads ? 1 : 0; },
+           [](GenerateSettings& s, int i) { s.options.quads = s.options.boxes.quads = i == 1; }},
+       always},
       {"depth", text("Depth"),
        text("How often a part of the model may be cut in two: more cuts, more and smaller boxes. "
             "Also how deep the splitting is shown."),
@@ -87,22 +108,65 @@ std::vector<GenerateOption> budget_options() {
            1e-6, 0.5, 0.001, 5,
            [](GenerateSettings& s) -> double& { return s.options.improve.clearance; }},
        with_budget},
-      {"faces", text("Faces"), text("The cage gets at most so many triangles, too."), Group::budget,
+      {"faces", text("Most triangles"), text("The cage gets at most so many triangles, too."),
+       Group::budget,
        GenerateOption::Integer{0, 200000,
                                [](GenerateSettings& s) -> int& { return s.options.improve.faces; },
                                text("no limit")},
        with_budget},
+      {"max-gap", text("Greatest gap"),
+       text("The coarsest cage no point of which is farther from the model than this fraction of "
+            "its diagonal, proved. Vertices and triangles are then limits only."),
+       Group::budget,
+       GenerateOption::Number{0, 0.5, 0.005, 4,
+                              [](GenerateSettings& s) -> double& { return s.options.max_gap; },
+                              text("as the vertices allow")},
+       with_budget},
+      {"density", text("Finer where"),
+       text("Where the cage gets more vertices. Painted: where vertex colors are red, and fewer "
+            "where they are blue. File: one number for each vertex of the model; four times as "
+            "much makes edges half as long."),
+       Group::budget,
+       GenerateOption::Choice{
+           {"even", "colors", "file"},
+           {text("Even"), text("Painted red"), text("A file says")},
+           [](const GenerateSettings& s) { return static_cast<int>(s.density); },
+           [](GenerateSettings& s, int i) { s.density = static_cast<DensitySource>(i); }},
+       with_budget},
+      {"density-file", text("Density file"),
+       text("Text with one number to a line, or a NumPy array, in the order of the vertices."),
+       Group::budget,
+       GenerateOption::File{text("Numbers (*.txt *.csv *.dat *.npy);;All files (*)"),
+                            [](GenerateSettings& s) -> QString& { return s.density_file; }},
+       with_density_file},
+      {"pieces", text("Separate pieces"),
+       text("A model in several pieces gets one cage with thin bridges, or a closed piece of cage "
+            "for each."),
+       Group::budget,
+       GenerateOption::Choice{
+           {"together", "apart"},
+           {text("One cage"), text("A cage each")},
+           [](const GenerateSettings& s) { return static_cast<int>(s.options.boxes.boxes.pieces); },
+           [](GenerateSettings& s, int i) {
+             s.options.boxes.boxes.pieces = static_cast<Pieces>(i);
+           }},
+       always},
+  };
+}
+
+std::vector<GenerateOption> envelope_options() {
+  return {
       {"closing", text("Closing"),
        text("Holes and gaps narrower than twice this fraction of the diagonal are filled before "
             "the envelope is made."),
-       Group::budget,
+       Group::envelope,
        GenerateOption::Number{0, 0.5, 0.005, 4,
                               [](GenerateSettings& s) -> double& { return s.options.closing; }},
        with_envelope},
       {"envelope-resolution", text("Envelope resolution"),
        text("Voxels along the model's diagonal; finer envelopes follow narrow gaps and take "
             "longer."),
-       Group::budget,
+       Group::envelope,
        GenerateOption::Integer{0, 512,
                                [](GenerateSettings& s) -> int& { return s.options.resolution; },
                                text("automatic")},
@@ -155,14 +219,14 @@ std::vector<GenerateOption> box_options() {
        text("Volume rule: a cut must save this fraction of the box's volume."), Group::boxes,
        GenerateOption::Number{0, 1, 0.005, 4,
                               [](GenerateSettings& s) -> double& { return slicing(s).min_gain; }},
-       always},
+       by_volume},
       {"min-jump", text("Least jump"),
        text("Published rule: a jump lower than this fraction of the greatest cross-section is not "
             "clear."),
        Group::boxes,
        GenerateOption::Number{0, 1, 0.05, 3,
                               [](GenerateSettings& s) -> double& { return slicing(s).min_jump; }},
-       always},
+       by_jumps},
       {"no-jump", text("Without a jump"),
        text("Published rule: what becomes of a box in which no axis has a clear jump."),
        Group::boxes,
@@ -171,7 +235,7 @@ std::vector<GenerateOption> box_options() {
            {text("Leave it whole"), text("Cut in the middle")},
            [](const GenerateSettings& s) { return static_cast<int>(slicing(s).no_jump); },
            [](GenerateSettings& s, int i) { slicing(s).no_jump = static_cast<NoJump>(i); }},
-       always},
+       by_jumps},
       {"split", text("Split"),
        text("Whether each connected part of a half gets a box of its own, or each half one."),
        Group::boxes,
@@ -191,18 +255,6 @@ std::vector<GenerateOption> box_options() {
            [](const GenerateSettings& s) { return s.options.boxes.registration ? 1 : 0; },
            [](GenerateSettings& s, int i) { s.options.boxes.registration = i == 1; }},
        with_boxes},
-      {"pieces", text("Separate pieces"),
-       text("A model in several pieces gets one cage with thin bridges, or a closed piece of cage "
-            "for each."),
-       Group::boxes,
-       GenerateOption::Choice{
-           {"together", "apart"},
-           {text("One cage"), text("A cage each")},
-           [](const GenerateSettings& s) { return static_cast<int>(s.options.boxes.boxes.pieces); },
-           [](GenerateSettings& s, int i) {
-             s.options.boxes.boxes.pieces = static_cast<Pieces>(i);
-           }},
-       with_boxes},
   };
 }
 
@@ -211,7 +263,7 @@ std::vector<GenerateOption> box_options() {
 const std::vector<GenerateOption>& generate_options() {
   static const std::vector<GenerateOption> options = [] {
     std::vector<GenerateOption> all = basic_options();
-    for (const auto& part : {budget_options(), box_options()}) {
+    for (const auto& part : {budget_options(), envelope_options(), box_options()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;
@@ -227,6 +279,8 @@ QJsonObject to_json(const GenerateSettings& settings) {
       json[option.key] = integer->value(copy);
     } else if (const auto* number = std::get_if<GenerateOption::Number>(&option.kind)) {
       json[option.key] = number->value(copy);
+    } else if (const auto* file = std::get_if<GenerateOption::File>(&option.kind)) {
+      json[option.key] = file->value(copy);
     } else {
       const auto& choice = std::get<GenerateOption::Choice>(option.kind);
       json[option.key] = choice.keys[choice.get(copy)];
@@ -245,6 +299,8 @@ GenerateSettings generate_settings_from_json(const QJsonObject& json) {
     } else if (const auto* number = std::get_if<GenerateOption::Number>(&option.kind)) {
       double& kept = number->value(settings);
       kept = std::clamp(value.toDouble(kept), number->least, number->most);
+    } else if (const auto* file = std::get_if<GenerateOption::File>(&option.kind)) {
+      file->value(settings) = value.toString();
     } else {
       const auto& choice = std::get<GenerateOption::Choice>(option.kind);
       if (const auto at = choice.keys.indexOf(value.toString()); at >= 0) {

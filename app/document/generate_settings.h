@@ -21,8 +21,17 @@ enum class CageMethod {
   union_of_boxes, ///< that union itself
 };
 
+/// Where the cage is to be finer than elsewhere.
+enum class DensitySource {
+  even,
+  colors, ///< where the model's vertex colors are red, and coarser where blue
+  file,   ///< as the numbers of a file say
+};
+
 struct GenerateSettings {
   CageMethod method = CageMethod::envelope;
+  DensitySource density = DensitySource::even;
+  QString density_file; ///< one number for each vertex of the model: see read_vertex_weights()
   BudgetCageOptions options = {.symmetry = cagewright::Symmetry::automatic}; ///< `start` follows
                                                                              ///< the method
 };
@@ -42,6 +51,7 @@ struct GenerateOption {
     double step = 0.01;
     int decimals = 3;
     std::function<double&(GenerateSettings&)> value;
+    QString at_least = {}; ///< as of Integer
   };
   struct Choice {
     QStringList keys;   ///< as in files
@@ -50,15 +60,20 @@ struct GenerateOption {
     std::function<void(GenerateSettings&, int)> set;
   };
 
-  enum class Group { basic, boxes, budget };
+  struct File {
+    QString filter; ///< as of QFileDialog
+    std::function<QString&(GenerateSettings&)> value;
+  };
+
+  enum class Group { basic, budget, envelope, boxes };
 
   QString key; ///< as on the command line, without dashes
   QString label;
   QString help; ///< a sentence or two
   Group group = Group::basic;
-  std::variant<Integer, Number, Choice> kind;
-  /// Whether the method looks at it.
-  std::function<bool(CageMethod)> applies;
+  std::variant<Integer, Number, Choice, File> kind;
+  /// Whether it makes a difference, the others being as they are.
+  std::function<bool(const GenerateSettings&)> applies;
 };
 
 /// All of them, in the order in which they are shown.

@@ -1,16 +1,21 @@
 #include "app/jobs/work.h"
 
 #include "app/document/binding.h"
+#include "cage/density.h"
 #include "deform/normals.h"
 #include "deform/stream.h"
 #include "deform/weights_file.h"
 #include "io/read_mesh.h"
+#include "io/read_vertex_weights.h"
 #include "io/rewrite_positions.h"
 #include "io/write_mesh.h"
 #include "mesh/triangulate.h"
 #include "mesh/weld.h"
 
+#include <QStringList>
+
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -18,6 +23,47 @@ namespace cagewright::app {
 namespace {
 
 constexpr double most_weight_bytes = 1.5e9;
+
+/// One weight for each vertex of the model; none: even.
+Result<std::vector<double>> density_of(const Model& model, const GenerateSettings& settings) {
+  switch (settings.density) {
+  case DensitySource::even:
+    break;
+  case DensitySource::colors:
+    return painted_density(model.mesh.colors);
+  case DensitySource::file: {
+    if (settings.density_file.isEmpty()) {
+      return Error{ErrorCode::invalid_option,
+                   "choose the file that says where the cage is to be finer, or let it be even"};
+    }
+    Result<std::vector<double>> weights =
+        read_vertex_weights(settings.density_file.toStdString(), model.mesh.positions.size());
+    return weights ? density_of_weights(std::move(*weights)) : weights;
+  }
+  }
+  return std::vector<double>();
+}
+
+QString remark_of(const BudgetCage& made, const BudgetCageOptions& options) {
+  QStringList remarks;
+  if (!made.report.reached) {
+    remarks.append(
+        QObject::tr("larger than asked for: %1").arg(QString::fromStdString(made.report.why_not)));
+  }
+  if (!made.why_not_boxes.empty()) {
+    remarks.append(QString::fromStdString(made.why_not_boxes));
+  }
+  if (options.symmetry != cagewright::Symmetry::off && !made.mirror &&
+      !made.why_not_mirrored.empty()) {
+    remarks.append(
+        QObject::tr("not mirrored: %1").arg(QString::fromStdString(made.why_not_mirrored)));
+  }
+  if (made.quads) {
+    remarks.append(
+        QObject::tr("%1 % of the faces are quads").arg(std::lround(100 * made.quads->share)));
+  }
+  return remarks.join("; ");
+}
 
 } // namespace
 
@@ -28,20 +74,30 @@ Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
     if (!made) {
       return made.error();
     }
-    return MadeCage{std::make_shared<const PolygonMesh>(made->cage),
+    return MadeCage{std::make_shared<const PolygonMesh>(std::move(made->faces)),
                     std::make_shared<const BoxDecomposition>(std::move(made->boxes)),
                     {}};
   }
-  Result<BudgetCage> made = make_budget_cage(model.view(), settings.options, progress);
+  BudgetCageOptions options = settings.options;
+  if (options.improve.vertices == 0 && options.improve.faces == 0 && options.max_gap == 0) {
+    return Error{ErrorCode::invalid_option,
+                 "the cage needs a limit: give a number of vertices or triangles, or a greatest "
+                 "gap"};
+  }
+  const Result<std::vector<double>> density = density_of(model, settings);
+  if (!density) {
+    return density.error();
+  }
+  options.improve.density = *density;
+  Result<BudgetCage> made = make_budget_cage(model.view(), options, progress);
   if (!made) {
     return made.error();
   }
-  MadeCage result{std::make_shared<const PolygonMesh>(made->cage), nullptr, {}};
+  MadeCage result{std::make_shared<const PolygonMesh>(made->polygons ? *std::move(made->polygons)
+                                                                     : PolygonMesh(made->cage)),
+                  nullptr, remark_of(*made, options)};
   if (made->boxes) {
     result.stages = std::make_shared<const BoxDecomposition>(std::move(made->boxes->boxes));
-  }
-  if (!made->report.reached) {
-    result.remark = QString::fromStdString(made->report.why_not);
   }
   return result;
 }

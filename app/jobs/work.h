@@ -21,10 +21,11 @@ namespace cagewright::app {
 struct MadeCage {
   std::shared_ptr<const PolygonMesh> cage;
   std::shared_ptr<const BoxDecomposition> stages; ///< how the model was split; null for an envelope
-  QString remark;                                 ///< why the budget was not met, or empty
+  QString remark;                                 ///< what is not as asked for, and shares of quads; or empty
 };
 
-/// Makes a cage as the settings say. Errors: those of make_budget_cage() and generate_cage().
+/// Makes a cage as the settings say. Errors: those of make_budget_cage(), generate_cage(),
+/// painted_density() and read_vertex_weights(); invalid_option (nothing limits the cage).
 Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
                            const Progress& progress = {});
 

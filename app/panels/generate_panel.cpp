@@ -2,14 +2,22 @@
 
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QFileDialog>
 #include <QFormLayout>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSignalBlocker>
 #include <QSpinBox>
+#include <QStyle>
 #include <QToolButton>
 #include <QVBoxLayout>
+
+#include <map>
+#include <set>
+#include <utility>
+#include <variant>
 
 namespace cagewright::app {
 namespace {
@@ -35,6 +43,7 @@ QLabel* explanation(const QString& text) {
   QFont font = label->font();
   font.setPointSizeF(font.pointSizeF() * 0.88);
   label->setFont(font);
+  label->setContentsMargins(0, 0, 0, 5);
   return label;
 }
 
@@ -74,19 +83,23 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
     toggle->setArrowType(on ? Qt::DownArrow : Qt::RightArrow);
   });
 
-  auto* budget = new QFormLayout;
-  auto* boxes = new QFormLayout;
-  advanced_layout->addWidget(new QLabel("<b>" + tr("Budget and envelope") + "</b>"));
-  advanced_layout->addLayout(budget);
-  advanced_layout->addWidget(new QLabel("<b>" + tr("Boxes") + "</b>"));
-  advanced_layout->addLayout(boxes);
-  for (QFormLayout* form : {basic, budget, boxes}) {
+  basic->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  std::map<GenerateOption::Group, Group> groups = {
+      {GenerateOption::Group::basic, {nullptr, basic}}};
+  const std::pair<GenerateOption::Group, QString> titles[] = {
+      {GenerateOption::Group::budget, tr("How close, and where finer")},
+      {GenerateOption::Group::envelope, tr("Envelope")},
+      {GenerateOption::Group::boxes, tr("Boxes")}};
+  for (const auto& [group, title] : titles) {
+    auto* form = new QFormLayout;
     form->setRowWrapPolicy(QFormLayout::WrapLongRows);
+    auto* label = new QLabel("<b>" + title + "</b>");
+    advanced_layout->addWidget(label);
+    advanced_layout->addLayout(form);
+    groups[group] = {label, form};
   }
   for (const GenerateOption& option : generate_options()) {
-    add_option(option, option.group == GenerateOption::Group::basic    ? basic
-                       : option.group == GenerateOption::Group::budget ? budget
-                                                                       : boxes);
+    add_option(option, groups.at(option.group));
   }
   auto* defaults = new QPushButton(tr("Defaults"));
   defaults->setToolTip(tr("Puts all options back"));
@@ -143,69 +156,101 @@ template <class Set> void GeneratePanel::change(const Set& set) {
   session_.set_settings(settings);
 }
 
-void GeneratePanel::add_option(const GenerateOption& option, QFormLayout* form) {
-  auto* field = new QWidget;
-  auto* layout = new QVBoxLayout(field);
-  layout->setContentsMargins(0, 0, 0, 4);
-  layout->setSpacing(1);
-  QWidget* editor = nullptr;
-  std::function<void()> show_value;
+GeneratePanel::Field GeneratePanel::field_of(const GenerateOption::Integer& integer) {
+  auto* box = new QSpinBox;
+  box->setRange(integer.least, integer.most);
+  box->setSpecialValueText(integer.at_least);
+  connect(box, &QSpinBox::valueChanged, this, [this, &integer](int value) {
+    change([&](GenerateSettings& s) { integer.value(s) = value; });
+  });
+  return {box, [this, box, &integer] {
+            GenerateSettings settings = session_.settings();
+            const QSignalBlocker blocker(box);
+            box->setValue(integer.value(settings));
+          }};
+}
 
-  if (const auto* integer = std::get_if<GenerateOption::Integer>(&option.kind)) {
-    auto* box = new QSpinBox;
-    box->setRange(integer->least, integer->most);
-    box->setSpecialValueText(integer->at_least);
-    connect(box, &QSpinBox::valueChanged, this, [this, integer](int value) {
-      change([&](GenerateSettings& s) { integer->value(s) = value; });
-    });
-    show_value = [this, box, integer] {
-      GenerateSettings settings = session_.settings();
-      const QSignalBlocker blocker(box);
-      box->setValue(integer->value(settings));
-    };
-    editor = box;
-  } else if (const auto* number = std::get_if<GenerateOption::Number>(&option.kind)) {
-    auto* box = new QDoubleSpinBox;
-    box->setRange(number->least, number->most);
-    box->setDecimals(number->decimals);
-    box->setSingleStep(number->step);
-    connect(box, &QDoubleSpinBox::valueChanged, this, [this, number](double value) {
-      change([&](GenerateSettings& s) { number->value(s) = value; });
-    });
-    show_value = [this, box, number] {
-      GenerateSettings settings = session_.settings();
-      const QSignalBlocker blocker(box);
-      box->setValue(number->value(settings));
-    };
-    editor = box;
-  } else {
-    const auto* choice = &std::get<GenerateOption::Choice>(option.kind);
-    auto* box = new QComboBox;
-    box->addItems(choice->labels);
-    connect(box, &QComboBox::currentIndexChanged, this,
-            [this, choice](int at) { change([&](GenerateSettings& s) { choice->set(s, at); }); });
-    show_value = [this, box, choice] {
-      const QSignalBlocker blocker(box);
-      box->setCurrentIndex(choice->get(session_.settings()));
-    };
-    editor = box;
-  }
-  editor->setObjectName(option.key);
-  editor->setToolTip(option.help);
-  editor->setAccessibleName(option.label);
-  editor->setFocusPolicy(Qt::StrongFocus);
-  editor->installEventFilter(new IgnoreWheel(editor));
-  layout->addWidget(editor);
-  layout->addWidget(explanation(option.help));
-  form->addRow(option.label, field);
-  rows_.push_back({&option, form, field, std::move(show_value)});
+GeneratePanel::Field GeneratePanel::field_of(const GenerateOption::Number& number) {
+  auto* box = new QDoubleSpinBox;
+  box->setRange(number.least, number.most);
+  box->setDecimals(number.decimals);
+  box->setSingleStep(number.step);
+  box->setSpecialValueText(number.at_least);
+  connect(box, &QDoubleSpinBox::valueChanged, this, [this, &number](double value) {
+    change([&](GenerateSettings& s) { number.value(s) = value; });
+  });
+  return {box, [this, box, &number] {
+            GenerateSettings settings = session_.settings();
+            const QSignalBlocker blocker(box);
+            box->setValue(number.value(settings));
+          }};
+}
+
+GeneratePanel::Field GeneratePanel::field_of(const GenerateOption::Choice& choice) {
+  auto* box = new QComboBox;
+  box->addItems(choice.labels);
+  connect(box, &QComboBox::currentIndexChanged, this,
+          [this, &choice](int at) { change([&](GenerateSettings& s) { choice.set(s, at); }); });
+  return {box, [this, box, &choice] {
+            const QSignalBlocker blocker(box);
+            box->setCurrentIndex(choice.get(session_.settings()));
+          }};
+}
+
+GeneratePanel::Field GeneratePanel::field_of(const GenerateOption::File& file) {
+  auto* line = new QLineEdit;
+  line->setPlaceholderText(tr("None"));
+  QAction* browse = line->addAction(style()->standardIcon(QStyle::SP_DialogOpenButton),
+                                    QLineEdit::TrailingPosition);
+  browse->setToolTip(tr("Choose a file"));
+  connect(browse, &QAction::triggered, this, [this, line, &file] {
+    const QString path = QFileDialog::getOpenFileName(this, tr("Choose a File"), {}, file.filter);
+    if (!path.isEmpty()) {
+      line->setText(path);
+    }
+  });
+  connect(line, &QLineEdit::textChanged, this, [this, &file](const QString& path) {
+    change([&](GenerateSettings& s) { file.value(s) = path; });
+  });
+  return {line, [this, line, &file] {
+            GenerateSettings settings = session_.settings();
+            const QSignalBlocker blocker(line);
+            if (line->text() != file.value(settings)) { // the cursor stays where it is typed
+              line->setText(file.value(settings));
+            }
+          }};
+}
+
+void GeneratePanel::add_option(const GenerateOption& option, const Group& group) {
+  Field field = std::visit([this](const auto& kind) { return field_of(kind); }, option.kind);
+  field.editor->setObjectName(option.key);
+  field.editor->setToolTip(option.help);
+  field.editor->setAccessibleName(option.label);
+  field.editor->setAccessibleDescription(option.help);
+  field.editor->setFocusPolicy(Qt::StrongFocus);
+  field.editor->installEventFilter(new IgnoreWheel(field.editor));
+  QLabel* help = explanation(option.help);
+  group.form->addRow(option.label, field.editor);
+  group.form->addRow(help);
+  rows_.push_back({&option, group, {field.editor, help}, std::move(field.show_value)});
 }
 
 void GeneratePanel::update_options() {
-  const CageMethod method = session_.settings().method;
+  std::set<QLabel*> shown;
   for (const Row& row : rows_) {
     row.show_value();
-    row.form->setRowVisible(row.field, row.option->applies(method));
+    const bool applies = row.option->applies(session_.settings());
+    for (QWidget* field : row.fields) {
+      row.group.form->setRowVisible(field, applies);
+    }
+    if (applies) {
+      shown.insert(row.group.title);
+    }
+  }
+  for (const Row& row : rows_) {
+    if (row.group.title != nullptr) {
+      row.group.title->setVisible(shown.contains(row.group.title));
+    }
   }
 }
 

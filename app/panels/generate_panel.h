@@ -6,11 +6,13 @@
 
 #include <QWidget>
 
+#include <array>
 #include <functional>
 #include <vector>
 
 class QCheckBox;
 class QFormLayout;
+class QLabel;
 class QPushButton;
 
 namespace cagewright::app {
@@ -26,15 +28,29 @@ Q_SIGNALS:
   void loadCageRequested();
 
 private:
-  void add_option(const GenerateOption& option, QFormLayout* form);
-  void update_options(); ///< values, and which of them the method looks at
+  struct Group {
+    QLabel* title = nullptr; ///< null: none
+    QFormLayout* form = nullptr;
+  };
+  /// A field to edit an option, and what shows the option's value in it.
+  struct Field {
+    QWidget* editor;
+    std::function<void()> show_value;
+  };
+
+  void add_option(const GenerateOption& option, const Group& group);
+  Field field_of(const GenerateOption::Integer& integer);
+  Field field_of(const GenerateOption::Number& number);
+  Field field_of(const GenerateOption::Choice& choice);
+  Field field_of(const GenerateOption::File& file);
+  void update_options(); ///< values, and which of them make a difference
   void update_buttons();
   template <class Set> void change(const Set& set);
 
   struct Row {
     const GenerateOption* option;
-    QFormLayout* form;
-    QWidget* field;
+    Group group;
+    std::array<QWidget*, 2> fields; ///< to edit it, and to explain it: a line each
     std::function<void()> show_value;
   };
 

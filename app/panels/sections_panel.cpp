@@ -68,7 +68,8 @@ SectionsPanel::SectionsPanel(Document& document, QWidget* parent)
   chart_->legend()->setAlignment(Qt::AlignTop);
   auto* view = new QChartView(chart_);
   view->setRenderHint(QPainter::Antialiasing);
-  view->setMinimumSize(200, 120);
+  view->setMinimumSize(200, 30);
+  tree_->setMinimumHeight(30);
   right_layout->addWidget(view, 1);
   splitter->addWidget(right);
   splitter->setStretchFactor(1, 2);

@@ -1,12 +1,13 @@
 #include "app/panels/tool_bar.h"
 
 #include <QActionGroup>
-#include <QComboBox>
 #include <QDoubleSpinBox>
-#include <QLabel>
+#include <QMenu>
 #include <QSignalBlocker>
+#include <QToolButton>
 
 #include <array>
+#include <cmath>
 
 namespace cagewright::app {
 namespace {
@@ -30,82 +31,193 @@ struct Switch {
   bool ToolSettings::*value;
 };
 
-const std::array<Switch, 5> switch_names = {
+constexpr std::array<Switch, 6> switch_names = {
     Switch{{"see_through", "See Through", "Also select what the faces of the cage hide"},
            &ToolSettings::see_through},
     Switch{{"snap", "Snap", "Movements go in steps; hold Ctrl for the opposite"},
            &ToolSettings::snap},
-    Switch{{"proportional", "Proportional", "Neighbors follow, less with distance"},
+    Switch{{"proportional", "Proportional", "Neighbors follow, less with distance (O)"},
            &ToolSettings::proportional},
-    Switch{{"symmetric", "Symmetric", "The mirror image of the selection follows"},
+    Switch{{"connected_only", "Connected",
+            "Proportional editing measures along the edges of the cage, not through the air: the "
+            "other leg stays where it is"},
+           &ToolSettings::connected_only},
+    Switch{{"symmetric", "Symmetric",
+            "The mirror image of what is edited follows: movements and changes of faces alike"},
            &ToolSettings::symmetric},
     Switch{{"stop_at_contact", "Stop at Contact",
             "While refining: drags go no further than the cage stays valid"},
            &ToolSettings::stop_at_contact}};
+
+struct ChoiceText {
+  Named named;
+  std::array<Named, 3> entries;
+  int (*get)(const ToolSettings&);
+  void (*set)(ToolSettings&, int);
+};
+
+constexpr std::array<ChoiceText, 4> choice_names = {
+    ChoiceText{{"axes", "Axes", "Along which axes the gizmo and the keys X, Y, Z work"},
+               {Named{"axes_world", "World Axes", "The axes of the model's file"},
+                Named{"axes_local", "Local Axes", "Z along the normal of the selection"},
+                Named{"axes_view", "View Axes", "X to the right, Y up, Z towards you"}},
+               [](const ToolSettings& t) { return static_cast<int>(t.axes); },
+               [](ToolSettings& t, int i) { t.axes = static_cast<AxesKind>(i); }},
+    ChoiceText{{"pivot", "Pivot", "The point that stays where it is when turning and scaling"},
+               {Named{"pivot_median", "Median", "The mean of the selected vertices"},
+                Named{"pivot_box", "Middle of Box", "The middle of the box round the selection"},
+                Named{"pivot_individual", "Each Part",
+                      "Each connected part of the selection turns about its own middle"}},
+               [](const ToolSettings& t) { return static_cast<int>(t.pivot); },
+               [](ToolSettings& t, int i) { t.pivot = static_cast<Pivot>(i); }},
+    ChoiceText{{"falloff", "Falloff", "How much neighbors follow in proportional editing"},
+               {Named{"falloff_smooth", "Smooth", "Soft at both ends: a round hill"},
+                Named{"falloff_linear", "Linear", "Evenly less with distance: a cone"},
+                Named{"falloff_sharp", "Sharp", "Much less soon: a peak"}},
+               [](const ToolSettings& t) { return static_cast<int>(t.falloff); },
+               [](ToolSettings& t, int i) { t.falloff = static_cast<Falloff>(i); }},
+    ChoiceText{{"mirror", "Mirror Plane",
+                "The plane of symmetric editing and of mirrored "
+                "selections, by its normal"},
+               {Named{"mirror_x", "Across X", "Left and right of models that look along Z"},
+                Named{"mirror_y", "Across Y", "The plane across the Y axis"},
+                Named{"mirror_z", "Across Z", "The plane across the Z axis"}},
+               [](const ToolSettings& t) { return t.symmetry_axis; },
+               [](ToolSettings& t, int i) { t.symmetry_axis = i; }}};
+
+enum : std::size_t { choose_axes, choose_pivot, choose_falloff, choose_mirror };
+
+/// The step of snapping that the tool goes in, its limits and its unit.
+struct StepOf {
+  double ToolSettings::*value;
+  double most;
+  double step;
+  int decimals;
+  const char* suffix;
+  const char* help;
+};
+
+StepOf step_of(Tool tool) {
+  switch (tool) {
+  case Tool::rotate:
+    return {&ToolSettings::snap_angle_degrees, 90, 5, 1, "\u00b0", "Step of turning, in degrees"};
+  case Tool::scale:
+    return {&ToolSettings::snap_scale, 1, 0.05, 3, "", "Step of scaling, as a factor"};
+  default:
+    return {&ToolSettings::snap_step,
+            0.5,
+            0.005,
+            3,
+            "",
+            "Step of moving, as a fraction of the model's diagonal"};
+  }
+}
+
+void tell(QAction* action, const Named& named) {
+  action->setObjectName(named.name);
+  action->setToolTip(ToolBar::tr(named.help));
+  action->setStatusTip(ToolBar::tr(named.help));
+  action->setCheckable(true);
+}
 
 } // namespace
 
 ToolBar::ToolBar(Document& document, QWidget* parent)
     : QToolBar(tr("Tools"), parent), document_(document) {
   setObjectName("tools");
-  tools_ = new QActionGroup(this);
-  for (std::size_t i = 0; i < tool_names.size(); ++i) {
-    QAction* action = addAction(tr(tool_names[i].text));
-    action->setObjectName(tool_names[i].name);
-    action->setToolTip(tr(tool_names[i].help));
-    action->setStatusTip(tr(tool_names[i].help));
-    action->setCheckable(true);
-    tools_->addAction(action);
-    connect(action, &QAction::triggered, this,
-            [this, i] { change([&](ToolSettings& t) { t.tool = static_cast<Tool>(i); }); });
-  }
+  add_tools();
   addSeparator();
-  axes_ = new QComboBox;
-  axes_->addItems({tr("World axes"), tr("Local axes"), tr("View axes")});
-  axes_->setToolTip(tr("Along which axes the gizmo moves"));
-  connect(axes_, &QComboBox::currentIndexChanged, this,
-          [this](int i) { change([&](ToolSettings& t) { t.axes = static_cast<AxesKind>(i); }); });
-  addWidget(axes_);
+  add_choice(choose_axes);
+  add_choice(choose_pivot);
   addSeparator();
-  for (const Switch& s : switch_names) {
-    QAction* action = addAction(tr(s.named.text));
-    action->setObjectName(s.named.name);
-    action->setToolTip(tr(s.named.help));
-    action->setStatusTip(tr(s.named.help));
-    action->setCheckable(true);
-    connect(action, &QAction::toggled, this,
-            [this, &s](bool on) { change([&](ToolSettings& t) { t.*s.value = on; }); });
-    switches_.append(action);
-    if (s.value == &ToolSettings::snap) {
-      step_ = new QDoubleSpinBox;
-      step_->setRange(0.001, 0.5);
-      step_->setDecimals(3);
-      step_->setSingleStep(0.005);
-      step_->setToolTip(tr("Step of snapping, as a fraction of the model's diagonal"));
-      connect(step_, &QDoubleSpinBox::valueChanged, this,
-              [this](double v) { change([&](ToolSettings& t) { t.snap_step = v; }); });
-      addWidget(step_);
-    } else if (s.value == &ToolSettings::proportional) {
-      radius_ = new QDoubleSpinBox;
-      radius_->setRange(0.001, 2);
-      radius_->setDecimals(3);
-      radius_->setSingleStep(0.02);
-      radius_->setToolTip(
-          tr("How far proportional editing reaches, as a fraction of the diagonal"));
+  for (std::size_t i = 0; i < switch_names.size(); ++i) {
+    const bool ToolSettings::*value = switch_names[i].value;
+    if (value == &ToolSettings::connected_only) {
+      radius_ = add_number(
+          "radius", 0.001, 10, 0.02, 3,
+          tr("How far proportional editing reaches, as a fraction of the diagonal (the wheel "
+             "changes it while dragging)"));
       connect(radius_, &QDoubleSpinBox::valueChanged, this,
               [this](double v) { change([&](ToolSettings& t) { t.proportional_radius = v; }); });
-      addWidget(radius_);
-    } else if (s.value == &ToolSettings::symmetric) {
-      mirror_ = new QComboBox;
-      mirror_->addItems({tr("across X"), tr("across Y"), tr("across Z")});
-      mirror_->setToolTip(tr("The normal of the mirror plane"));
-      connect(mirror_, &QComboBox::currentIndexChanged, this,
-              [this](int i) { change([&](ToolSettings& t) { t.symmetry_axis = i; }); });
-      addWidget(mirror_);
+      add_choice(choose_falloff);
+    }
+    add_switch(i);
+    if (value == &ToolSettings::snap) {
+      step_ = add_number("snap_step", 0.001, 90, 0.005, 3, {});
+      connect(step_, &QDoubleSpinBox::valueChanged, this,
+              [this](double v) { change([&](ToolSettings& t) { t.*step_of(t.tool).value = v; }); });
+    } else if (value == &ToolSettings::symmetric) {
+      add_choice(choose_mirror);
     }
   }
   connect(&document, &Document::toolsChanged, this, &ToolBar::update_tools);
   update_tools();
+}
+
+void ToolBar::add_tools() {
+  tools_ = new QActionGroup(this);
+  for (std::size_t i = 0; i < tool_names.size(); ++i) {
+    QAction* action = addAction(tr(tool_names[i].text));
+    tell(action, tool_names[i]);
+    tools_->addAction(action);
+    connect(action, &QAction::triggered, this,
+            [this, i] { change([&](ToolSettings& t) { t.tool = static_cast<Tool>(i); }); });
+  }
+}
+
+void ToolBar::add_switch(std::size_t number) {
+  const Switch& s = switch_names[number];
+  QAction* action = addAction(tr(s.named.text));
+  tell(action, s.named);
+  connect(action, &QAction::toggled, this,
+          [this, &s](bool on) { change([&](ToolSettings& t) { t.*s.value = on; }); });
+  switches_.append(action);
+}
+
+void ToolBar::add_choice(std::size_t number) {
+  const ChoiceText& text = choice_names[number];
+  Choice choice{new QToolButton, new QMenu(tr(text.named.text), this), new QActionGroup(this),
+                text.get};
+  for (int i = 0; i < 3; ++i) {
+    const Named& named = text.entries[static_cast<std::size_t>(i)];
+    QAction* action = choice.menu->addAction(tr(named.text));
+    tell(action, named);
+    choice.entries->addAction(action);
+    connect(action, &QAction::triggered, this,
+            [this, &text, i] { change([&](ToolSettings& t) { text.set(t, i); }); });
+  }
+  choice.button->setObjectName(text.named.name);
+  choice.button->setToolTip(tr(text.named.help));
+  choice.button->setAccessibleName(tr(text.named.text));
+  choice.button->setPopupMode(QToolButton::InstantPopup);
+  choice.button->setMenu(choice.menu);
+  choice.button->setAutoRaise(true);
+  choice.button->setStyleSheet("QToolButton { padding-right: 14px; }"); // for the arrow
+  addWidget(choice.button);
+  choices_.push_back(choice);
+}
+
+QDoubleSpinBox* ToolBar::add_number(const char* name, double least, double most, double step,
+                                    int decimals, const QString& help) {
+  auto* box = new QDoubleSpinBox;
+  box->setObjectName(name);
+  box->setRange(least, most);
+  box->setDecimals(decimals);
+  box->setSingleStep(step);
+  box->setToolTip(help);
+  box->setKeyboardTracking(false);
+  addWidget(box);
+  return box;
+}
+
+void ToolBar::add_to(QMenu* menu) const {
+  menu->addActions(tools_->actions());
+  menu->addSeparator();
+  menu->addActions(switches_);
+  menu->addSeparator();
+  for (const Choice& choice : choices_) {
+    menu->addMenu(choice.menu);
+  }
 }
 
 template <class Set> void ToolBar::change(const Set& set) {
@@ -120,11 +232,19 @@ void ToolBar::update_tools() {
   for (int i = 0; i < switches_.size(); ++i) {
     switches_[i]->setChecked(tools.*switch_names[static_cast<std::size_t>(i)].value);
   }
-  const QSignalBlocker blockers[] = {QSignalBlocker(axes_), QSignalBlocker(mirror_),
-                                     QSignalBlocker(step_), QSignalBlocker(radius_)};
-  axes_->setCurrentIndex(static_cast<int>(tools.axes));
-  mirror_->setCurrentIndex(tools.symmetry_axis);
-  step_->setValue(tools.snap_step);
+  for (const Choice& choice : choices_) {
+    QAction* entry = choice.entries->actions()[choice.chosen(tools)];
+    entry->setChecked(true);
+    choice.button->setText(entry->text());
+  }
+  const QSignalBlocker blockers[] = {QSignalBlocker(step_), QSignalBlocker(radius_)};
+  const StepOf step = step_of(tools.tool);
+  step_->setRange(0.001, step.most);
+  step_->setDecimals(step.decimals);
+  step_->setSingleStep(step.step);
+  step_->setSuffix(step.suffix);
+  step_->setToolTip(tr(step.help));
+  step_->setValue(tools.*step.value);
   radius_->setValue(tools.proportional_radius);
 }
 

@@ -6,9 +6,12 @@
 
 #include <QToolBar>
 
+#include <vector>
+
 class QActionGroup;
-class QComboBox;
 class QDoubleSpinBox;
+class QMenu;
+class QToolButton;
 
 namespace cagewright::app {
 
@@ -18,20 +21,31 @@ class ToolBar final : public QToolBar {
 public:
   explicit ToolBar(Document& document, QWidget* parent = nullptr);
 
-  /// The actions, for the menu.
-  [[nodiscard]] QActionGroup* tools() const { return tools_; }
-  [[nodiscard]] const QList<QAction*>& switches() const { return switches_; }
+  /// Adds all that the tool bar has to a menu: tools, switches, and what there is to choose.
+  void add_to(QMenu* menu) const;
 
 private:
+  /// One of several, as a button that opens a menu.
+  struct Choice {
+    QToolButton* button;
+    QMenu* menu;
+    QActionGroup* entries;
+    int (*chosen)(const ToolSettings&);
+  };
+
+  void add_tools();
+  void add_switch(std::size_t number);
+  void add_choice(std::size_t number);
+  QDoubleSpinBox* add_number(const char* name, double least, double most, double step, int decimals,
+                             const QString& help);
   void update_tools();
   template <class Set> void change(const Set& set);
 
   Document& document_;
   QActionGroup* tools_ = nullptr;
   QList<QAction*> switches_;
-  QComboBox* axes_ = nullptr;
-  QComboBox* mirror_ = nullptr;
-  QDoubleSpinBox* step_ = nullptr;
+  std::vector<Choice> choices_;
+  QDoubleSpinBox* step_ = nullptr; ///< of snapping, for the tool that is chosen
   QDoubleSpinBox* radius_ = nullptr;
 };
 

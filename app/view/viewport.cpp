@@ -118,6 +118,13 @@ void Viewport::set_orthographic(bool orthographic) {
   camera_moved();
 }
 
+void Viewport::set_up_axis(UpAxis up) {
+  if (up != camera_.up()) {
+    camera_.set_up(up);
+    camera_moved();
+  }
+}
+
 Box3 Viewport::scene_box() const {
   return document_.bounds();
 }
@@ -153,11 +160,10 @@ void Viewport::frame_selection() {
 
 QJsonObject Viewport::camera_state() const {
   const Vec3& t = camera_.target();
-  return {{"target", QJsonArray{t.x(), t.y(), t.z()}},
-          {"distance", camera_.distance()},
-          {"yaw_degrees", camera_.view().yaw_degrees},
-          {"pitch_degrees", camera_.view().pitch_degrees},
-          {"perspective", camera_.is_perspective()}};
+  return {
+      {"target", QJsonArray{t.x(), t.y(), t.z()}}, {"distance", camera_.distance()},
+      {"yaw_degrees", camera_.view().yaw_degrees}, {"pitch_degrees", camera_.view().pitch_degrees},
+      {"perspective", camera_.is_perspective()},   {"up", camera_.up() == UpAxis::z ? "z" : "y"}};
 }
 
 void Viewport::set_camera_state(const QJsonObject& state) {
@@ -166,6 +172,9 @@ void Viewport::set_camera_state(const QJsonObject& state) {
     return;
   }
   const double nothing = std::nan("");
+  if (state["up"].isString()) {
+    camera_.set_up(state["up"].toString() == "z" ? UpAxis::z : UpAxis::y);
+  }
   camera_.restore(
       {target[0].toDouble(nothing), target[1].toDouble(nothing), target[2].toDouble(nothing)},
       state["distance"].toDouble(),

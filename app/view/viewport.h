@@ -37,6 +37,9 @@ public:
   void set_standard_view(const QString& name);
   void set_orthographic(bool orthographic);
   [[nodiscard]] bool orthographic() const { return !camera_.is_perspective(); }
+  /// Which axis of the model points up on the screen.
+  void set_up_axis(UpAxis up);
+  [[nodiscard]] UpAxis up_axis() const { return camera_.up(); }
   /// Brings everything, or only the selection, into view.
   void frame_all();
   void frame_selection();

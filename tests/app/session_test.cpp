@@ -13,7 +13,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <variant>
 
 namespace cagewright::app {
 namespace {
@@ -91,6 +93,98 @@ TEST_F(SessionTest, MakesACageThatTheCheckCallsValid) {
   EXPECT_GT(session_.document().metrics()->volume_ratio, 1);
   session_.editor().undo_stack().undo();
   EXPECT_FALSE(session_.document().has_cage());
+}
+
+TEST_F(SessionTest, MakesQuadsWhereTheyAreAskedFor) {
+  session_.open(path("model.obj"));
+  wait();
+  GenerateSettings settings;
+  settings.options.improve.vertices = 48;
+  settings.options.quads = true;
+  session_.set_settings(settings);
+  session_.generate();
+  wait();
+  ASSERT_TRUE(session_.document().has_cage()) << failures_.front();
+  const PolygonMesh& cage = session_.document().cage_rest();
+  std::size_t quads = 0;
+  for (std::size_t f = 0; f < cage.face_count(); ++f) {
+    quads += cage.face(f).size() == 4 ? 1 : 0;
+  }
+  EXPECT_GT(2 * quads, cage.face_count());
+  EXPECT_NE(message_.find("quads"), std::string::npos) << message_;
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_TRUE(session_.document().check().report->valid());
+}
+
+TEST_F(SessionTest, MakesTheCageFinerWhereAFileSaysSo) {
+  session_.open(path("model.obj"));
+  wait();
+  GenerateSettings settings;
+  settings.options.improve.vertices = 60;
+  settings.density = DensitySource::file;
+  settings.density_file = QString::fromStdString(path("density.txt").string());
+  {
+    std::ofstream file(path("density.txt"));
+    for (const Vec3& p : session_.document().model()->mesh.positions) {
+      file << (p.x() > 0 ? 50 : 1) << '\n';
+    }
+  }
+  session_.set_settings(settings);
+  session_.generate();
+  wait();
+  ASSERT_TRUE(session_.document().has_cage()) << failures_.front();
+  const std::vector<Vec3> made = cage();
+  const auto on_the_right =
+      std::count_if(made.begin(), made.end(), [](const Vec3& p) { return p.x() > 0; });
+  EXPECT_GT(3 * on_the_right, 2 * static_cast<std::ptrdiff_t>(made.size()));
+}
+
+TEST_F(SessionTest, SaysWhatADensityLacks) {
+  session_.open(path("model.obj"));
+  wait();
+  std::ofstream(path("short.txt")) << "1\n2\n";
+  GenerateSettings settings;
+  const auto failure = [&] {
+    failures_.clear();
+    session_.set_settings(settings);
+    session_.generate();
+    wait();
+    return failures_.empty() ? std::string() : failures_.front();
+  };
+  settings.density = DensitySource::colors;
+  EXPECT_NE(failure().find("no vertex colors"), std::string::npos);
+  settings.density = DensitySource::file;
+  EXPECT_NE(failure().find("choose the file"), std::string::npos);
+  settings.density_file = QString::fromStdString(path("short.txt").string());
+  EXPECT_NE(failure().find("short.txt"), std::string::npos);
+  settings.density = DensitySource::even;
+  settings.options.improve.vertices = 0;
+  EXPECT_NE(failure().find("needs a limit"), std::string::npos);
+  EXPECT_FALSE(session_.document().has_cage());
+}
+
+TEST(GenerateSettings, ComeBackFromAFile) {
+  GenerateSettings settings;
+  for (const GenerateOption& option : generate_options()) { // each another than its default
+    if (const auto* integer = std::get_if<GenerateOption::Integer>(&option.kind)) {
+      int& value = integer->value(settings);
+      value = value == integer->most ? value - 1 : value + 1;
+    } else if (const auto* number = std::get_if<GenerateOption::Number>(&option.kind)) {
+      number->value(settings) = (number->value(settings) + number->most) / 2;
+    } else if (const auto* file = std::get_if<GenerateOption::File>(&option.kind)) {
+      file->value(settings) = "numbers.txt";
+    } else {
+      const auto& choice = std::get<GenerateOption::Choice>(option.kind);
+      choice.set(settings, choice.get(settings) == 0 ? 1 : 0);
+    }
+  }
+  const QJsonObject json = to_json(settings);
+  EXPECT_EQ(to_json(generate_settings_from_json(json)), json);
+  const QJsonObject defaults = to_json(GenerateSettings());
+  for (const GenerateOption& option : generate_options()) {
+    EXPECT_NE(json[option.key], defaults[option.key]) << option.key.toStdString();
+    EXPECT_FALSE(option.help.isEmpty());
+  }
 }
 
 TEST_F(SessionTest, KeepsTheOldCageWhenGeneratingIsCancelled) {
