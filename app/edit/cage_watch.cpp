@@ -2,13 +2,13 @@
 
 #include "core/parallel.h"
 #include "exact/predicates.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/measures.h"
 #include "mesh/topology.h"
 #include "validate/containment.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace cagewright::app {
 namespace {
@@ -67,25 +67,13 @@ WatchedModel::WatchedModel(TriangleView model, std::shared_ptr<const TriangleBvh
     bvh = std::make_shared<const TriangleBvh>(model);
   }
   diagonal = cagewright::diagonal(model.positions);
-  std::vector<Index> parent(model.positions.size());
-  std::iota(parent.begin(), parent.end(), Index{0});
-  const auto find = [&](Index v) {
-    while (parent[v] != v) {
-      parent[v] = parent[parent[v]];
-      v = parent[v];
-    }
-    return v;
-  };
+  DisjointSets sets(model.positions.size());
   for (const Triangle& t : model.triangles) {
-    for (int k = 1; k < 3; ++k) {
-      const Index a = find(t[0]);
-      const Index b = find(t[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    sets.join(t);
   }
-  for (Index v = 0; v < parent.size(); ++v) {
+  for (Index v = 0; v < model.positions.size(); ++v) {
     is_finite = is_finite && model.positions[v].allFinite();
-    if (parent[v] == v) {
+    if (sets.find(v) == v) {
       points.push_back(model.positions[v]);
     }
   }

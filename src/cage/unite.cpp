@@ -1,6 +1,7 @@
 // The one translation unit that uses the GPL packages of CGAL.
 #include "cage/unite.h"
 
+#include "mesh/disjoint_sets.h"
 #include "validate/validate_cage.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -18,7 +19,6 @@
 #include <exception>
 #include <map>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -519,23 +519,15 @@ ExactMesh union_of_all(std::span<Leaf> leaves, const Planes& planes, Counter& co
 
 /// The connected component of each triangle, by shared vertices; numbered in order of appearance.
 std::vector<Index> components(const ExactMesh& mesh, Index& count) {
-  std::vector<Index> parent(mesh.points.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto find = [&parent](Index v) {
-    while (parent[v] != v) {
-      v = parent[v] = parent[parent[v]];
-    }
-    return v;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    parent[find(b)] = find(a);
-    parent[find(c)] = find(a);
+  DisjointSets sets(mesh.points.size());
+  for (const Triangle& t : mesh.triangles) {
+    sets.join(t);
   }
   std::map<Index, Index> number;
   std::vector<Index> component;
   for (const Triangle& t : mesh.triangles) {
     component.push_back(
-        number.try_emplace(find(t[0]), static_cast<Index>(number.size())).first->second);
+        number.try_emplace(sets.find(t[0]), static_cast<Index>(number.size())).first->second);
   }
   count = static_cast<Index>(number.size());
   return component;
@@ -630,35 +622,26 @@ ExactMesh without_rounding_kinks(const ExactMesh& mesh, const Planes& planes) {
 /// one. The caller checks that the result is still embedded.
 TriangleMesh without_tiny_edges(const TriangleMesh& mesh, double size) {
   constexpr double tiny = 1e-10;
-  std::vector<Index> leader(mesh.positions.size());
-  std::iota(leader.begin(), leader.end(), 0U);
-  const auto find = [&leader](Index v) {
-    while (leader[v] != v) {
-      v = leader[v] = leader[leader[v]];
-    }
-    return v;
-  };
+  DisjointSets sets(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = t[i];
       const Index b = t[(i + 1) % 3];
       if ((mesh.positions[a] - mesh.positions[b]).norm() <= tiny * size) {
-        const Index low = std::min(find(a), find(b));
-        const Index high = std::max(find(a), find(b));
-        leader[high] = low;
+        sets.join(a, b);
       }
     }
   }
   TriangleMesh kept;
   std::vector<Index> index(mesh.positions.size());
   for (Index v = 0; v < index.size(); ++v) {
-    if (find(v) == v) {
+    if (sets.find(v) == v) {
       index[v] = static_cast<Index>(kept.positions.size());
       kept.positions.push_back(mesh.positions[v]);
     }
   }
   for (const auto& [a, b, c] : mesh.triangles) {
-    const Triangle t = {index[find(a)], index[find(b)], index[find(c)]};
+    const Triangle t = {index[sets.find(a)], index[sets.find(b)], index[sets.find(c)]};
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) {
       kept.triangles.push_back(t);
     }

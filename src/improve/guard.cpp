@@ -1,6 +1,7 @@
 #include "improve/guard.h"
 
 #include "exact/predicates.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/measures.h"
 
 #include <algorithm>
@@ -47,25 +48,18 @@ std::vector<Index> weld(std::span<const Vec3> positions) {
 }
 
 std::vector<ModelSurface::Part> connected_parts(TriangleView model) {
-  std::vector<Index> parent = weld(model.positions);
-  const auto root = [&](Index v) {
-    while (parent[v] != v) {
-      parent[v] = parent[parent[v]];
-      v = parent[v];
-    }
-    return v;
-  };
+  const std::vector<Index> welded = weld(model.positions);
+  DisjointSets sets(welded.size());
+  for (Index v = 0; v < welded.size(); ++v) {
+    sets.join(v, welded[v]);
+  }
   for (const Triangle& t : model.triangles) {
-    for (int i = 1; i < 3; ++i) {
-      const Index a = root(t[0]);
-      const Index b = root(t[i]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    sets.join(t);
   }
   std::vector<ModelSurface::Part> parts;
   std::vector<Index> part_of(model.positions.size(), no_index);
   for (const Triangle& t : model.triangles) {
-    Index& part = part_of[root(t[0])];
+    Index& part = part_of[sets.find(t[0])];
     if (part == no_index) {
       part = static_cast<Index>(parts.size());
       parts.push_back({Box3(), model.positions[t[0]]});

@@ -1,5 +1,6 @@
 #include "mesh/shapes.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -21,6 +22,20 @@ TriangleMesh make_cube() {
                     {0, 2, 3}, {0, 3, 1},   // z = -1
                     {4, 5, 7}, {4, 7, 6}};  // z = +1
   // clang-format on
+  return cube;
+}
+
+PolygonMesh make_quad_cube() {
+  PolygonMesh cube;
+  cube.positions = make_cube().positions;
+  for (const std::array<Index, 4>& face : {std::array<Index, 4>{0, 4, 6, 2},
+                                           {1, 3, 7, 5},
+                                           {0, 1, 5, 4},
+                                           {2, 6, 7, 3},
+                                           {0, 2, 3, 1},
+                                           {4, 5, 7, 6}}) {
+    cube.add_face(face);
+  }
   return cube;
 }
 

@@ -3,6 +3,7 @@
 /// exactly reproducible.
 #pragma once
 
+#include "mesh/polygon_mesh.h"
 #include "mesh/triangle_mesh.h"
 
 namespace cagewright {
@@ -10,6 +11,9 @@ namespace cagewright {
 /// The axis-aligned cube [-1, 1]^3: 8 vertices, 12 outward triangles. Vertex i has x > 0 when
 /// i & 1, y > 0 when i & 2 and z > 0 when i & 4.
 TriangleMesh make_cube();
+
+/// The same cube of six quads.
+PolygonMesh make_quad_cube();
 
 /// The tetrahedron over the alternate corners of the cube [-1, 1]^3.
 TriangleMesh make_tetrahedron();

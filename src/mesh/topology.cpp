@@ -1,34 +1,13 @@
 #include "mesh/topology.h"
 
+#include "mesh/disjoint_sets.h"
+
 #include <algorithm>
 #include <numeric>
 #include <span>
 
 namespace cagewright {
 namespace {
-
-/// Disjoint sets, named by their smallest member.
-class Sets {
-public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index find(Index i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
-  }
-  void join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<Index> parent_;
-};
 
 /// A side of a face: the edge from `low`, in whose bucket it lies, to `high`.
 struct Side {
@@ -182,7 +161,7 @@ private:
   }
 
   void find_components() {
-    Sets sets(vertices_);
+    DisjointSets sets(vertices_);
     for (std::size_t f = 0; f < faces_; ++f) {
       for (const Index v : face_of_(f)) {
         sets.join(face_of_(f)[0], v);
@@ -206,7 +185,7 @@ private:
   /// The corners at a vertex are joined across the edges that leave it: more than one set left is a
   /// vertex where fans of faces touch in a point.
   void list_vertices() {
-    Sets corners(first_corner_.back());
+    DisjointSets corners(first_corner_.back());
     const auto corner_at = [&](const Side& side, bool at_low) {
       const std::size_t size = face_of_(side.face).size();
       const std::size_t local = side.corner - first_corner_[side.face];
@@ -240,7 +219,7 @@ private:
   }
 
   void count_loops() {
-    Sets sets(vertices_);
+    DisjointSets sets(vertices_);
     std::vector<bool> on_boundary(vertices_, false);
     for (const auto& [a, b] : report_.boundary_edges) {
       sets.join(a, b);

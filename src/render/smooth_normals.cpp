@@ -1,6 +1,7 @@
 #include "render/smooth_normals.h"
 
 #include "core/parallel.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/measures.h"
 #include "render/edges.h"
 
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -50,28 +50,6 @@ std::vector<Side> sorted_sides(TriangleView mesh) {
   return sides;
 }
 
-/// Sets of corners that share a normal.
-class CornerSets {
-public:
-  explicit CornerSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index find(Index corner) {
-    while (parent_[corner] != corner) {
-      corner = parent_[corner] = parent_[parent_[corner]];
-    }
-    return corner;
-  }
-  void unite(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<Index> parent_;
-};
-
 double angle_at(TriangleView mesh, const Triangle& t, std::size_t i) {
   const Vec3 u = mesh.positions[t[(i + 1) % 3]] - mesh.positions[t[i]];
   const Vec3 v = mesh.positions[t[(i + 2) % 3]] - mesh.positions[t[i]];
@@ -89,7 +67,7 @@ std::vector<Eigen::Vector3f> smooth_normals(TriangleView mesh, double crease_deg
   // Only where exactly two triangles meet, with the same idea of outside, is there a surface.
   const double flattest = std::cos(crease_degrees * std::numbers::pi / 180);
   const std::vector<Side> sides = sorted_sides(mesh);
-  CornerSets sets(3 * count);
+  DisjointSets sets(3 * count); // of corners that share a normal
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
     for (end = i + 1; end < sides.size() && sides[end].same_edge(sides[i]);) {
       ++end;
@@ -98,8 +76,8 @@ std::vector<Eigen::Vector3f> smooth_normals(TriangleView mesh, double crease_deg
     const Side& b = sides[end - 1];
     if (end == i + 2 && a.forward != b.forward &&
         flat[a.corner / 3].dot(flat[b.corner / 3]) > flattest) {
-      sets.unite(a.corner, next_corner(b.corner));
-      sets.unite(next_corner(a.corner), b.corner);
+      sets.join(a.corner, next_corner(b.corner));
+      sets.join(next_corner(a.corner), b.corner);
     }
   }
 

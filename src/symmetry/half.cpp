@@ -1,12 +1,12 @@
 #include "symmetry/half.h"
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/measures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -214,25 +214,14 @@ std::optional<TriangleMesh> cut_half(TriangleView surface) {
     return std::nullopt;
   }
   // The largest piece: seen from a point of the plane what closes it has no volume.
-  std::vector<Index> parent(cut.positions.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](Index v) {
-    while (parent[v] != v) {
-      v = parent[v] = parent[parent[v]];
-    }
-    return v;
-  };
+  DisjointSets pieces(cut.positions.size());
   for (const Triangle& t : cut.triangles) {
-    for (int i = 1; i < 3; ++i) {
-      const Index a = root(t[0]);
-      const Index b = root(t[i]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    pieces.join(t);
   }
   std::vector<double> volume(cut.positions.size(), 0);
   const Vec3 origin = cut.positions[crossings.begin()->second];
   for (const Triangle& t : cut.triangles) {
-    volume[root(t[0])] +=
+    volume[pieces.find(t[0])] +=
         (cut.positions[t[0]] - origin)
             .dot((cut.positions[t[1]] - origin).cross(cut.positions[t[2]] - origin));
   }
@@ -241,7 +230,7 @@ std::optional<TriangleMesh> cut_half(TriangleView surface) {
   TriangleMesh result;
   std::vector<Index> number(cut.positions.size(), none);
   for (Triangle t : cut.triangles) {
-    if (root(t[0]) != largest) {
+    if (pieces.find(t[0]) != largest) {
       continue;
     }
     for (Index& v : t) {

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "exact/predicates.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/topology.h"
 #include "validate/cage_parts.h"
 #include "validate/containment.h"
@@ -389,29 +390,18 @@ private:
 
   /// For each model vertex, the first of its group.
   static std::vector<Index> groups(TriangleView model, const std::vector<char>& touches) {
-    std::vector<Index> parent(model.positions.size());
-    std::iota(parent.begin(), parent.end(), Index{0});
-    const auto find = [&](Index v) {
-      while (parent[v] != v) {
-        parent[v] = parent[parent[v]];
-        v = parent[v];
-      }
-      return v;
-    };
+    DisjointSets sets(model.positions.size());
     for (std::size_t t = 0; t < model.triangles.size(); ++t) {
       if (touches[t] != 0) {
         continue;
       }
-      for (const Index v : model.triangles[t]) {
-        const Index a = find(model.triangles[t][0]);
-        const Index b = find(v);
-        parent[std::max(a, b)] = std::min(a, b);
-      }
+      sets.join(model.triangles[t]);
     }
-    for (Index v = 0; v < parent.size(); ++v) {
-      parent[v] = find(v);
+    std::vector<Index> firsts(model.positions.size());
+    for (Index v = 0; v < firsts.size(); ++v) {
+      firsts[v] = sets.find(v);
     }
-    return parent;
+    return firsts;
   }
 
   const PolygonMesh& given_;

@@ -1,11 +1,11 @@
 #include "voxel/bridge.h"
 
+#include "mesh/disjoint_sets.h"
 #include "voxel/grid_components.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
 namespace cagewright {
@@ -121,21 +121,11 @@ int join_pieces(VoxelGrid& grid) {
   if (pieces.count < 2) {
     return 0;
   }
-  std::vector<std::int32_t> parent(static_cast<std::size_t>(pieces.count));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t p) {
-    while (parent[p] != p) {
-      parent[p] = parent[parent[p]];
-      p = parent[p];
-    }
-    return p;
-  };
+  DisjointSets joined(static_cast<std::size_t>(pieces.count));
   int bridges = 0;
   for (const Link& link : links_between_zones(grid, pieces)) {
-    const std::int32_t a = root(pieces.labels[link.from]);
-    const std::int32_t b = root(pieces.labels[link.to]);
-    if (a != b) {
-      parent[std::max(a, b)] = std::min(a, b);
+    if (joined.join(static_cast<Index>(pieces.labels[link.from]),
+                    static_cast<Index>(pieces.labels[link.to]))) {
       mark_line(grid, link.from, link.to);
       ++bridges;
     }

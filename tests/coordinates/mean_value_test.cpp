@@ -387,14 +387,7 @@ TEST(MeanValue, StillSumsToOneInAnOpenCageThatIsAllowed) {
 }
 
 PolygonMesh cube_of_quads() {
-  PolygonMesh cube;
-  cube.positions = make_cube().positions;
-  cube.add_face({0, 2, 3, 1});
-  cube.add_face({4, 5, 7, 6});
-  cube.add_face({0, 1, 5, 4});
-  cube.add_face({2, 6, 7, 3});
-  cube.add_face({0, 4, 6, 2});
-  cube.add_face({1, 3, 7, 5});
+  PolygonMesh cube = make_quad_cube();
   cube.positions[7] = {1.4, 1.1, 0.9}; // three quads are not flat
   return cube;
 }

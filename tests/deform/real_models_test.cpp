@@ -30,17 +30,11 @@ struct Pair {
 
 /// A box of quads round the model, or a sphere of triangles that touches nothing.
 PolygonMesh box_around(const PolygonMesh& model) {
-  PolygonMesh cage;
+  PolygonMesh cage = make_quad_cube();
   const Box3 box = bounding_box(model.positions);
-  for (const Vec3& corner : make_cube().positions) {
-    cage.positions.emplace_back(box.center() + 0.51 * corner.cwiseProduct(box.sizes()));
+  for (Vec3& corner : cage.positions) {
+    corner = box.center() + 0.51 * corner.cwiseProduct(box.sizes());
   }
-  cage.add_face({0, 2, 3, 1});
-  cage.add_face({4, 5, 7, 6});
-  cage.add_face({0, 1, 5, 4});
-  cage.add_face({2, 6, 7, 3});
-  cage.add_face({0, 4, 6, 2});
-  cage.add_face({1, 3, 7, 5});
   return cage;
 }
 

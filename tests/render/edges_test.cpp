@@ -7,18 +7,6 @@
 namespace cagewright {
 namespace {
 
-PolygonMesh quad_cube() {
-  PolygonMesh cube;
-  cube.positions = make_cube().positions;
-  cube.add_face({0, 2, 3, 1});
-  cube.add_face({4, 5, 7, 6});
-  cube.add_face({0, 1, 5, 4});
-  cube.add_face({2, 6, 7, 3});
-  cube.add_face({0, 4, 6, 2});
-  cube.add_face({1, 3, 7, 5});
-  return cube;
-}
-
 /// Every face with vertices of its own, as in an STL file.
 PolygonMesh taken_apart(const PolygonMesh& mesh) {
   PolygonMesh result;
@@ -34,13 +22,13 @@ PolygonMesh taken_apart(const PolygonMesh& mesh) {
 }
 
 TEST(PolygonEdges, AreTheTwelveSidesOfACubeOfQuads) {
-  EXPECT_EQ(polygon_edges(quad_cube()).size(), 12);
+  EXPECT_EQ(polygon_edges(make_quad_cube()).size(), 12);
   EXPECT_EQ(polygon_edges(PolygonMesh(make_cube())).size(), 18); // its diagonals are sides
 }
 
 TEST(PolygonEdges, CountPointsAtTheSamePlaceAsOne) {
-  EXPECT_EQ(polygon_edges(taken_apart(quad_cube())).size(), 12);
-  EXPECT_EQ(used_points(taken_apart(quad_cube())).size(), 8);
+  EXPECT_EQ(polygon_edges(taken_apart(make_quad_cube())).size(), 12);
+  EXPECT_EQ(used_points(taken_apart(make_quad_cube())).size(), 8);
 }
 
 TEST(PolygonEdges, LeaveOutSidesWithoutLength) {
@@ -62,7 +50,7 @@ TEST(PolygonEdges, CanLeaveOutTheFlatOnes) {
 }
 
 TEST(UsedPoints, LeaveOutStrays) {
-  PolygonMesh cube = quad_cube();
+  PolygonMesh cube = make_quad_cube();
   cube.positions.emplace_back(50, 50, 50);
   EXPECT_EQ(used_points(cube).size(), 8);
 }

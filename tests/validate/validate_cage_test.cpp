@@ -40,18 +40,6 @@ TriangleMesh small_model() {
   return scaled(make_icosphere(1), 0.25);
 }
 
-PolygonMesh quad_box() {
-  PolygonMesh box;
-  box.positions = make_cube().positions;
-  box.add_face({0, 2, 3, 1});
-  box.add_face({4, 5, 7, 6});
-  box.add_face({0, 1, 5, 4});
-  box.add_face({2, 6, 7, 3});
-  box.add_face({0, 4, 6, 2});
-  box.add_face({1, 3, 7, 5});
-  return box;
-}
-
 template <class Cage>
 ValidityReport judge(const Cage& cage, TriangleView model, const ValidateOptions& options = {}) {
   return validate_cage(cage, model, options).value();
@@ -84,7 +72,7 @@ constexpr ValidateOptions pieces_allowed = {.allow_pieces = true};
 
 TEST(ValidateCage, CertifiesABoxRoundASphere) {
   EXPECT_TRUE(judge(make_cube(), small_model()).valid());
-  EXPECT_TRUE(judge(quad_box(), small_model()).valid());
+  EXPECT_TRUE(judge(make_quad_cube(), small_model()).valid());
   EXPECT_TRUE(judge(PolygonMesh(make_icosphere(2)), small_model()).valid());
 }
 
@@ -412,7 +400,7 @@ TEST(ValidateCage, ListsAFaceThatPokesThroughBetweenItsVertices) {
 TEST(ValidateCage, ListsAQuadThatIsValidUnderOneDiagonalOnly) {
   // A box whose top is bent: along one diagonal a ridge above the model, along the other a valley
   // through it.
-  PolygonMesh cage = quad_box();
+  PolygonMesh cage = make_quad_cube();
   cage.positions[4].z() = 3; // the top is 4 5 7 6
   cage.positions[7].z() = 3;
   const TriangleMesh model = scaled(make_cube(), 0.3, {0, 0, 1.2});
@@ -422,7 +410,7 @@ TEST(ValidateCage, ListsAQuadThatIsValidUnderOneDiagonalOnly) {
     EXPECT_EQ(pair[1], 1U);
   }
   // Cut along the ridge it is a valid cage of triangles.
-  TriangleMesh ridge = to_triangle_mesh(quad_box());
+  TriangleMesh ridge = to_triangle_mesh(make_quad_cube());
   ridge.positions = cage.positions;
   std::erase_if(ridge.triangles, [](const Triangle& t) {
     return std::all_of(t.begin(), t.end(), [](Index v) { return v >= 4; });
@@ -433,7 +421,7 @@ TEST(ValidateCage, ListsAQuadThatIsValidUnderOneDiagonalOnly) {
 }
 
 TEST(ValidateCage, FindsAModelThatIsInsideUnderOneDiagonalOnly) {
-  PolygonMesh cage = quad_box();
+  PolygonMesh cage = make_quad_cube();
   cage.positions[4].z() = 3;
   cage.positions[7].z() = 3;
   // Small enough to float between the two diagonals, touching neither.
