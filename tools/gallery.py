@@ -24,15 +24,12 @@ PACKAGED = {
     "elephant": ("-35:12", "y"), "fandisk": ("-35:20", "y"), "hand": ("-35:12", "y"), "homer": ("20:8", "y"),
     "man": ("-25:10", "y"), "triceratops": ("-35:12", "y"), "turbine": ("-35:20", "y"), "knot1": ("-35:30", "y"),
 }
-SIZE = 260
+SIZE = 300
 
 
 class Gallery:
     def __init__(self, program, images, work):
         self.program, self.images, self.work = program, images, work
-        text = self.run("generate", "--help").stdout
-        self.has_quads = "--quads" in text
-        self.has_symmetry = "--symmetry" in text
 
     def run(self, *arguments):
         return subprocess.run([str(self.program), *map(str, arguments)], capture_output=True, text=True, check=False)
@@ -66,11 +63,6 @@ class Gallery:
         return json.loads(path.read_text())["cages"]
 
 
-def symmetry_of(cage):
-    pairs = cage.get("symmetric_pairs")
-    return "" if pairs is None else str(pairs)
-
-
 HEAD = ["| cage | valid | vertices | faces | quads | volume ratio | mean gap % | max gap % | 2r/R least | 5 % | valence | bend % | twist % |",
         "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"]
 
@@ -85,9 +77,8 @@ def row(title, c):
 
 def chapter(gallery, model, view, up):
     """The lines for one model."""
-    modes = [("triangles", [])] + ([("quads", ["--quads"])] if gallery.has_quads else [])
     lines, rows = [f"## {model.stem}", ""], []
-    for mode, options in modes:
+    for mode, options in (("triangles", []), ("quads", ["--quads"])):
         cages, titles = [], []
         for budget in BUDGETS:
             cage = gallery.cage(model, f"{mode}{budget}.obj", "--vertices", budget, *options)
