@@ -98,7 +98,7 @@ private:
       limits_.least_quality = 0.035;
       limits_.sharpest_bend = (limits_.sharpest_bend - 1) / 2;
       reduce(Placement::clear_of_model, budget_, Progress());
-      if (cage_.mesh.vertex_count() == before) {
+      if (i > 0 && cage_.mesh.vertex_count() == before) {
         break;
       }
     }
@@ -109,20 +109,23 @@ private:
   double refine(const Progress& progress) {
     double best = settle(6, progress.part(0, 0.4));
     WorkingCage kept = cage_;
-    const std::size_t count = std::max(budget_, cage_.mesh.vertex_count());
+    std::size_t count = std::max(budget_, cage_.mesh.vertex_count());
     for (int round = 0; round < options_.rounds && !progress.cancelled(); ++round) {
       const Progress part = progress.part(0.4 + 0.6 * round / options_.rounds,
                                           0.4 + 0.6 * (round + 1) / options_.rounds);
       split_edges(cage_, guard_, objective_, std::max<std::size_t>(4, count / 6), most_valence_);
       flip_edges(cage_, guard_, objective_, most_valence_);
       relax_steps(2, part.part(0, 0.2));
-      reduce(Placement::clear_of_model, count, part.part(0.2, 0.4));
+      reduce(Placement::clear_of_model, budget_, part.part(0.2, 0.4));
       const double value = settle(4, part.part(0.4, 1));
-      if (cage_.mesh.vertex_count() > count || value >= best) {
+      const std::size_t made = cage_.mesh.vertex_count();
+      const bool fewer = made < count && count > budget_;
+      if (made > count || (value >= best && !fewer)) {
         break;
       }
       constexpr double worth_another_round = 0.998;
-      const bool last = value > worth_another_round * best;
+      const bool last = value > worth_another_round * best && !fewer;
+      count = std::max(budget_, made);
       best = value;
       kept = cage_;
       if (last) {

@@ -53,15 +53,16 @@ public:
   [[nodiscard]] Corners corners(std::size_t i) const { return {patch_.position, from_[i], to_[i]}; }
 
   // The objective to second order round the present position: the volume is linear in it, the gap
-  // is taken along the direction to the nearest point of the model.
-  [[nodiscard]] Quadratic objective() const {
+  // is taken along the direction to the nearest point of the model. With `contacts` it adds half
+  // spaces that keep those points clear of the model.
+  [[nodiscard]] Quadratic objective(std::vector<HalfSpace>* contacts = nullptr) const {
     Quadratic q;
     const Vec3& w = patch_.position;
     double patch_area = 0;
     for (std::size_t i = 0; i < size(); ++i) {
       const Corners t = corners(i);
       q.gradient += (t[1] - w).cross(t[2] - w) / 6;
-      add_gap(q, t);
+      add_gap(q, t, contacts);
       add_shape(q, t);
       patch_area += triangle_area(t);
     }
@@ -124,7 +125,7 @@ public:
   }
 
 private:
-  void add_gap(Quadratic& q, const Corners& t) const {
+  void add_gap(Quadratic& q, const Corners& t, std::vector<HalfSpace>* contacts) const {
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
     const double area = n.norm() / 2;
     if (area <= 0) {
@@ -141,6 +142,10 @@ private:
         const Vec3 u = (p - near.point) / d;
         q.gradient += area / 3 * share * objective_.gap_slope(near) * u;
         q.hessian += area / 3 * share * share * objective_.gap_curvature(near) * u * u.transpose();
+        if (contacts != nullptr) {
+          const double room = std::max(0.0, d - margin * guard_.clearance());
+          contacts->push_back({-u, room / share - u.dot(patch_.position)});
+        }
       }
     }
     q.gradient += mean / 2 * (n / (2 * area)).cross(t[2] - t[1]); // the area changes too
@@ -281,6 +286,19 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
     patch.position = *next;
   }
   return best;
+}
+
+double promised_gain(const Guard& guard, const Objective& objective, const CageMesh& cage,
+                     Patch patch) {
+  const Fan fan(guard, objective, cage, patch);
+  std::vector<HalfSpace> contacts;
+  const Quadratic q = fan.objective(&contacts);
+  const std::optional<Vec3> place = solve(q, patch.position, contacts, patch.on_plane);
+  if (!place) {
+    return 0;
+  }
+  const Vec3 step = *place - patch.position;
+  return -(q.gradient.dot(step) + 0.5 * step.dot(q.hessian * step));
 }
 
 std::optional<Vec3> place_outside_patch(const CageMesh& cage, const Patch& patch) {

@@ -18,6 +18,12 @@ namespace cagewright {
 std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& objective,
                                          const CageMesh& cage, Patch patch);
 
+/// About how much the objective can be lowered by moving patch.vertex, which is on the cage or
+/// outside it, from patch.position: a tenth of the cost of finding the place. Of the model only
+/// what is nearest to a few points of the faces is heeded.
+double promised_gain(const Guard& guard, const Objective& objective, const CageMesh& cage,
+                     Patch patch);
+
 /// A position for patch.vertex outside the planes of all removed faces, with the least volume
 /// (progressive hulls: Sander, Gu, Gortler, Hoppe and Snyder, "Silhouette Clipping", 2000). The
 /// model need not be asked: what encloses the old faces encloses it. None: the planes have no point

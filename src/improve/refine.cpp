@@ -12,13 +12,15 @@ namespace cagewright {
 
 namespace {
 
+using Edge = std::array<Index, 2>;
+
 struct Change {
   double gain = 0; // by how much the objective falls
   Patch patch;
 };
 
-std::vector<std::array<Index, 2>> edges_of(const CageMesh& cage) {
-  std::vector<std::array<Index, 2>> edges;
+std::vector<Edge> edges_of(const CageMesh& cage) {
+  std::vector<Edge> edges;
   for (Index f = 0; f < cage.face_end(); ++f) {
     if (cage.has_face(f)) {
       const Triangle& t = cage.face(f);
@@ -35,12 +37,10 @@ std::vector<std::array<Index, 2>> edges_of(const CageMesh& cage) {
 }
 
 // The changes that lower the objective, the best first, evaluated in parallel.
-template <class Evaluate>
-std::vector<Change> ranked(const CageMesh& cage, const Evaluate& evaluate) {
-  const std::vector<std::array<Index, 2>> edges = edges_of(cage);
-  std::vector<std::optional<Change>> all(edges.size());
-  parallel_for(0, edges.size(), 1,
-               [&](std::size_t i) { all[i] = evaluate(edges[i][0], edges[i][1]); });
+template <class Candidate, class Evaluate>
+std::vector<Change> ranked(const std::vector<Candidate>& candidates, const Evaluate& evaluate) {
+  std::vector<std::optional<Change>> all(candidates.size());
+  parallel_for(0, candidates.size(), 1, [&](std::size_t i) { all[i] = evaluate(candidates[i]); });
   std::vector<Change> good;
   for (std::optional<Change>& change : all) {
     if (change && change->gain > 0) {
@@ -124,7 +124,8 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
   for (;;) {
     const CageMesh& mesh = cage.mesh;
     const std::vector<double> values = objective.face_values(mesh);
-    const std::vector<Change> changes = ranked(mesh, [&](Index a, Index b) {
+    const std::vector<Change> changes = ranked(edges_of(mesh), [&](const Edge& edge) {
+      const auto& [a, b] = edge;
       std::optional<Change> change;
       std::optional<Patch> patch = mesh.flip(a, b);
       if (!patch) {
@@ -154,12 +155,23 @@ std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& 
                         std::size_t count, std::size_t most_valence) {
   const CageMesh& mesh = cage.mesh;
   const std::vector<double> values = objective.face_values(mesh);
-  const std::vector<Change> changes = ranked(mesh, [&](Index a, Index b) {
+  // Splits that promise little are not looked into.
+  const std::size_t worth_a_look = 3 * count + 12;
+  std::vector<Change> promised = ranked(edges_of(mesh), [&](const Edge& edge) {
+    const auto& [a, b] = edge;
     std::optional<Change> change;
     Patch patch = mesh.split(a, b);
-    if (!leaves_valence(mesh, patch.removed, a, b, most_valence)) {
-      return change;
+    if (leaves_valence(mesh, patch.removed, a, b, most_valence)) {
+      const double share = mesh.is_half() && patch.on_plane ? 2 : 1;
+      const double gain = share * promised_gain(guard, objective, mesh, patch);
+      change = Change{gain, std::move(patch)};
     }
+    return change;
+  });
+  promised.resize(std::min(promised.size(), worth_a_look));
+  const std::vector<Change> changes = ranked(promised, [&](const Change& candidate) {
+    std::optional<Change> change;
+    Patch patch = candidate.patch;
     const std::optional<Vec3> position = place_clear_of_model(guard, objective, mesh, patch);
     if (!position) {
       return change;

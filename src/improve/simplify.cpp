@@ -46,7 +46,10 @@ public:
   bool run(const Progress& progress) {
     const std::size_t start = cage_.mesh.vertex_count();
     if (start > options_.vertices && !progress.cancelled()) {
-      offer(all_edges());
+      // Where a few of many edges are to go it is enough to look at the most promising.
+      const bool few =
+          options_.placement == Placement::clear_of_model && start < 2 * options_.vertices;
+      few ? guess_all() : offer(all_edges());
     }
     while (cage_.mesh.vertex_count() > options_.vertices) {
       if (progress.cancelled()) {
@@ -95,6 +98,43 @@ private:
     }
   }
 
+  // Puts all edges in the queue at a guess. Those that are far from the cheapest never need more.
+  void guess_all() {
+    const std::vector<Edge> edges = all_edges();
+    std::vector<std::optional<double>> costs(edges.size());
+    parallel_for(0, edges.size(), 4, [&](std::size_t i) { costs[i] = quick_guess(edges[i]); });
+    std::vector<Edge> unknown;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      if (costs[i]) {
+        guess(edges[i], *costs[i]);
+      } else {
+        unknown.push_back(edges[i]);
+      }
+    }
+    offer(unknown);
+  }
+
+  // The objective's change when the vertex is outside the old faces: it can do better than that.
+  [[nodiscard]] std::optional<double> quick_guess(const Edge& edge) const {
+    constexpr double hope = 0.5;
+    std::optional<Patch> patch = cage_.mesh.collapse(edge[0], edge[1]);
+    const std::optional<Vec3> position =
+        patch ? place_outside_patch(cage_.mesh, *patch) : std::nullopt;
+    if (!position) {
+      return std::nullopt;
+    }
+    patch->position = *position;
+    const double change = objective_.change(cage_.mesh, values_, *patch);
+    return (change > 0 ? hope : 1) * for_each_vertex(change, patch->gone);
+  }
+
+  // Of half a cage, for each vertex of the whole that it saves.
+  [[nodiscard]] double for_each_vertex(double cost, Index gone) const {
+    return cage_.mesh.is_half() && cost > 0
+               ? cost * 2 / static_cast<double>(cage_.mesh.copies(gone))
+               : cost;
+  }
+
   void push(Candidate candidate) {
     Known& known = known_[key(candidate.edge)];
     candidate.entry = ++known.entry;
@@ -136,13 +176,10 @@ private:
         guard_.loses_a_part(cage_.mesh, *patch)) {
       return std::nullopt;
     }
-    double cost = options_.placement == Placement::outside_patch
-                      ? quick_cost(*patch)
-                      : objective_.change(cage_.mesh, values_, *patch);
-    if (cage_.mesh.is_half() && cost > 0) { // for each vertex of the whole that it saves
-      cost *= 2.0 / static_cast<double>(cage_.mesh.copies(patch->gone));
-    }
-    return Candidate{.cost = cost,
+    const double cost = options_.placement == Placement::outside_patch
+                            ? quick_cost(*patch)
+                            : objective_.change(cage_.mesh, values_, *patch);
+    return Candidate{.cost = for_each_vertex(cost, patch->gone),
                      .edge = edge,
                      .evaluated = true,
                      .stamps = {stamps_[edge[0]], stamps_[edge[1]]},

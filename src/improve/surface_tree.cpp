@@ -138,6 +138,45 @@ private:
 
 } // namespace
 
+[[gnu::always_inline]] inline SurfaceTree::Node::Interval
+SurfaceTree::Node::box_range(const float (&slope)[3]) const {
+  const Lanes at = center[0] * slope[0] + center[1] * slope[1] + center[2] * slope[2];
+  const Lanes box =
+      half[0] * std::abs(slope[0]) + half[1] * std::abs(slope[1]) + half[2] * std::abs(slope[2]);
+  return {at - box, at + box};
+}
+
+[[gnu::always_inline]] inline SurfaceTree::Node::Interval
+SurfaceTree::Node::range(const float (&slope)[3], float length) const {
+  const Lanes at = center[0] * slope[0] + center[1] * slope[1] + center[2] * slope[2];
+  const Lanes box =
+      half[0] * std::abs(slope[0]) + half[1] * std::abs(slope[1]) + half[2] * std::abs(slope[2]);
+  const Lanes along = normal[0] * slope[0] + normal[1] * slope[1] + normal[2] * slope[2];
+  constexpr float error = 1e-6F; // of a squared cosine
+  const Lanes across = ((1 + error) * length * length - along.square()).max(0).sqrt();
+  const Lanes plate = thickness * along.abs() + radius * across;
+  const Lanes plate_at = at + middle * along;
+  return {(at - box).max(plate_at - plate), (at + box).min(plate_at + plate)};
+}
+
+[[gnu::always_inline]] inline SurfaceTree::Lanes
+SurfaceTree::Node::squared_distance(const std::array<float, 3>& p) const {
+  Lanes box = Lanes::Zero();
+  Lanes squared = Lanes::Zero();
+  Lanes height = Lanes::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Lanes d = p[k] - center[k];
+    box += (d.abs() - half[k]).max(0).square();
+    squared += d.square();
+    height += normal[k] * d;
+  }
+  constexpr float error = 1e-6F;
+  const Lanes aside = ((1 - error) * squared - height.square()).max(0).sqrt();
+  const Lanes plate =
+      ((height - middle).abs() - thickness).max(0).square() + (aside - radius).max(0).square();
+  return box.max(plate);
+}
+
 SurfaceTree::SurfaceTree(TriangleView model) {
   std::vector<Corners> corners;
   corners.reserve(model.triangles.size());
@@ -206,19 +245,8 @@ void SurfaceTree::build(std::span<const Corners> corners) {
       }
     }
     for (int i = 0; i < width; ++i) {
-      Box3 box;
-      for (Index k = ranges[i].first; k < ranges[i].first + ranges[i].count; ++k) {
-        for (const Vec3& p : corners[order[k]]) {
-          box.extend(p);
-        }
-      }
-      for (int k = 0; k < 3; ++k) {
-        const bool none = ranges[i].count == 0;
-        nodes_[task.node].center[k][i] =
-            none ? 0 : static_cast<float>((box.center()[k] - origin_[k]) * scale_);
-        nodes_[task.node].half[k][i] =
-            none ? nothing : static_cast<float>(box.sizes()[k] / 2 * scale_) + rounding / 4;
-      }
+      set_slot(nodes_[task.node], i, std::span(order).subspan(ranges[i].first, ranges[i].count),
+               corners);
       Index child = ranges[i].first | leaf_bit;
       if (ranges[i].count > 1) {
         child = static_cast<Index>(nodes_.size());
@@ -233,6 +261,51 @@ void SurfaceTree::build(std::span<const Corners> corners) {
     triangles_.push_back(corners[i]);
   }
   numbers_ = std::move(order);
+}
+
+// The box and the plate of a range of triangles.
+void SurfaceTree::set_slot(Node& node, int slot, std::span<const Index> range,
+                           std::span<const Corners> corners) const {
+  Box3 box;
+  Vec3 normal = Vec3::Zero();
+  for (const Index i : range) {
+    const Corners& t = corners[i];
+    normal += (t[1] - t[0]).cross(t[2] - t[0]);
+    for (const Vec3& p : t) {
+      box.extend(p);
+    }
+  }
+  const bool none = range.empty();
+  Vec3 center;
+  for (int k = 0; k < 3; ++k) {
+    node.center[k][slot] = none ? 0 : static_cast<float>((box.center()[k] - origin_[k]) * scale_);
+    node.half[k][slot] =
+        none ? nothing : static_cast<float>(box.sizes()[k] / 2 * scale_) + rounding / 4;
+    center[k] = node.center[k][slot];
+  }
+  const double length = normal.norm();
+  normal = length > 0 && std::isfinite(length) ? Vec3(normal / length) : Vec3(Vec3::UnitZ());
+  for (int k = 0; k < 3; ++k) {
+    node.normal[k][slot] = static_cast<float>(normal[k]);
+    normal[k] = node.normal[k][slot];
+  }
+  double low = 0;
+  double high = 0;
+  double radius = 0; // squared
+  bool first = true;
+  for (const Index i : range) {
+    for (const Vec3& p : corners[i]) {
+      const Vec3 from_center = (p - origin_) * scale_ - center;
+      const double height = normal.dot(from_center);
+      low = first ? height : std::min(low, height);
+      high = first ? height : std::max(high, height);
+      radius = std::max(radius, (from_center - height * normal).squaredNorm());
+      first = false;
+    }
+  }
+  node.middle[slot] = static_cast<float>((low + high) / 2);
+  node.thickness[slot] = static_cast<float>((high - low) / 2) + rounding / 4;
+  node.radius[slot] = static_cast<float>(std::sqrt(radius)) + rounding / 4;
 }
 
 std::array<float, 3> SurfaceTree::to_frame(const Vec3& p) const {
@@ -277,10 +350,7 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double e
       continue;
     }
     const Node& node = nodes_[entry.child];
-    Lanes squared = Lanes::Zero();
-    for (int k = 0; k < 3; ++k) {
-      squared += ((node.center[k] - q[k]).abs() - node.half[k]).max(0).square();
-    }
+    const Lanes squared = node.squared_distance(q);
     // The farthest first on the stack: the nearest is looked at next.
     const int begin = top;
     for (int i = 0; i < width; ++i) {
@@ -351,12 +421,9 @@ void SurfaceTree::visit_near(const Corners& triangle, double within, Visit visit
     Eigen::Array<bool, width, 1> beyond = squared > reach * reach;
     for (int a = 0; a < count; ++a) {
       const FloatAxis& axis = axes[a];
-      const Lanes at = node.center[0] * axis.normal[0] + node.center[1] * axis.normal[1] +
-                       node.center[2] * axis.normal[2];
-      const Lanes spread = node.half[0] * std::abs(axis.normal[0]) +
-                           node.half[1] * std::abs(axis.normal[1]) +
-                           node.half[2] * std::abs(axis.normal[2]) + reach;
-      beyond = beyond || at - spread > axis.high || at + spread < axis.low;
+      const Node::Interval range =
+          a == 0 ? node.range(axis.normal, 1) : node.box_range(axis.normal);
+      beyond = beyond || range.low - reach > axis.high || range.high + reach < axis.low;
     }
     for (int i = width - 1; i >= 0; --i) {
       if (!beyond[i] && node.half[0][i] >= 0) {
@@ -458,14 +525,10 @@ std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
     Lanes high;
     for (int a = 0; a < 4; ++a) {
       const FloatPlane& f = planes[a];
-      const Lanes at = node.center[0] * f.normal[0] + node.center[1] * f.normal[1] +
-                       node.center[2] * f.normal[2] - f.offset;
-      const Lanes spread = node.half[0] * std::abs(f.normal[0]) +
-                           node.half[1] * std::abs(f.normal[1]) +
-                           node.half[2] * std::abs(f.normal[2]);
-      low[a] = at - spread;
+      const Node::Interval range = a == 0 ? node.range(f.normal, 1) : node.box_range(f.normal);
+      low[a] = range.low - f.offset;
       if (a == 0) {
-        high = at + spread;
+        high = range.high - f.offset;
       }
     }
     // What lies beyond the sides or the ceiling, as the greatest of its heights above them.
@@ -536,6 +599,13 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
       best[cell] = {p.x() / cells, p.y() / cells, p.z()};
     }
   };
+  const auto in_cell = [&](const Corners& at, int i, int j, double sign) {
+    return std::all_of(at.begin(), at.end(), [&](const Vec3& p) {
+      const double x = sign > 0 ? p.x() - i : i + 1 - p.x();
+      const double y = sign > 0 ? p.y() - j : j + 1 - p.y();
+      return x >= 0 && y >= 0 && x + y <= 1;
+    });
+  };
   const auto add = [&](const Corners& t) {
     const Corners at = {flat(t[0]), flat(t[1]), flat(t[2])};
     const Vec3 low = at[0].cwiseMin(at[1]).cwiseMin(at[2]);
@@ -555,6 +625,13 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
             continue;
           }
           const double sign = upper == 0 ? 1 : -1;
+          const bool inside = high.z() <= most && in_cell(at, i, j, sign);
+          if (inside) {
+            for (const Vec3& p : at) {
+              offer(cell, p);
+            }
+            return; // of no other
+          }
           Clipped polygon(at);
           polygon.cut({Vec3(0, 0, 1), most});
           polygon.cut({Vec3(-sign, 0, 0), upper == 0 ? -i : i + 1.0});
@@ -570,6 +647,7 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
   // The three linear functions in the frame, in single precision.
   struct Linear {
     float slope[3];
+    float length; // of the slope
     float offset;
     float slack; // of rounding
   };
@@ -579,6 +657,7 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
       f.slope[k] = static_cast<float>(slope[k] / scale_);
       f.slack += rounding * std::abs(f.slope[k]);
     }
+    f.length = static_cast<float>(slope.norm() / scale_);
     f.offset = static_cast<float>(offset + slope.dot(origin_ - triangle[0]));
     f.slack += rounding * std::abs(f.offset);
     return f;
@@ -612,13 +691,9 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
     std::array<Lanes, 4> high;
     for (int a = 0; a < 4; ++a) {
       const Linear& f = functions[a];
-      const Lanes at = node.center[0] * f.slope[0] + node.center[1] * f.slope[1] +
-                       node.center[2] * f.slope[2] + f.offset;
-      const Lanes spread = node.half[0] * std::abs(f.slope[0]) +
-                           node.half[1] * std::abs(f.slope[1]) +
-                           node.half[2] * std::abs(f.slope[2]) + f.slack;
-      low[a] = at - spread;
-      high[a] = at + spread;
+      const Node::Interval range = a == 0 ? node.range(f.slope, f.length) : node.box_range(f.slope);
+      low[a] = range.low + (f.offset - f.slack);
+      high[a] = range.high + (f.offset + f.slack);
     }
     const int begin = top;
     for (int i = 0; i < width; ++i) {

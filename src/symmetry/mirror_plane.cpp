@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -25,6 +26,9 @@ constexpr std::size_t finalists = 6;
 /// Of the diagonal. Planes whose mean errors differ by less are equally good.
 constexpr double even = 2e-4;
 constexpr double thin = 0.05; // extent along the normal, of the diagonal
+/// Of the diagonal. What is farther from the surface than this does not fit: how far it is takes
+/// long to find out, and says nothing.
+constexpr double astray = 0.08;
 
 struct Plane {
   Vec3 normal = Vec3::UnitX();
@@ -107,11 +111,15 @@ public:
     return high - low;
   }
 
-  [[nodiscard]] Errors errors(const Plane& plane, std::size_t count) const {
+  /// Distances above `most` count as that.
+  [[nodiscard]] Errors errors(const Plane& plane, std::size_t count,
+                              double most = std::numeric_limits<double>::infinity()) const {
     const std::span<const Vec3> at = points(count);
     std::vector<double> d(at.size());
-    parallel_for(0, at.size(), 64,
-                 [&](std::size_t i) { d[i] = tree_.nearest(mirrored(plane, at[i])).distance; });
+    parallel_for(0, at.size(), 64, [&](std::size_t i) {
+      const NearestPoint found = tree_.nearest(mirrored(plane, at[i]), most);
+      d[i] = found ? found.distance : most;
+    });
     Errors e;
     for (const double x : d) {
       e.mean += x / static_cast<double>(d.size());
@@ -204,11 +212,11 @@ Plane refined(const Surface& surface, Plane plane, bool turn, std::size_t count 
   for (int step = 0; step < most_steps; ++step) {
     parallel_for(0, points.size(), 32, [&](std::size_t i) {
       images[i] = mirrored(plane, points[i]);
-      nearest[i] = surface.tree().nearest(images[i]);
+      nearest[i] = surface.tree().nearest(images[i], astray);
     });
     std::vector<double> distances(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      distances[i] = nearest[i].distance;
+      distances[i] = nearest[i] ? nearest[i].distance : astray;
     }
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
@@ -217,6 +225,9 @@ Plane refined(const Surface& surface, Plane plane, bool turn, std::size_t count 
     Mat3 a = Mat3::Zero();
     Vec3 b = Vec3::Zero();
     for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!nearest[i]) {
+        continue;
+      }
       const Vec3(&t)[3] = surface.tree().corners(nearest[i].triangle);
       const double d = nearest[i].distance;
       // Along the face's normal: the nearest point may slide on its face.
@@ -366,7 +377,7 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
       return std::nullopt;
     }
     const Plane plane{normal, 0};
-    candidates.push_back({plane, surface.errors(plane, few)});
+    candidates.push_back({plane, surface.errors(plane, few, astray)});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Judged& a, const Judged& b) { return a.errors.mean < b.errors.mean; });
@@ -387,7 +398,7 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
   // Most of them are far from anything: a few points show it.
   for (Judged& candidate : best) {
     const Plane turned = refined(surface, candidate.plane, true, few);
-    const Errors errors = surface.errors(turned, few);
+    const Errors errors = surface.errors(turned, few, astray);
     if (errors.mean < candidate.errors.mean) {
       candidate = {turned, errors};
     }
@@ -403,6 +414,10 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
       return std::nullopt;
     }
     const Plane turned = refined(surface, candidate.plane, true);
+    const double hopeful = 4 * options.most_mean_error + 2 * even;
+    if (std::min(candidate.errors.mean, surface.errors(turned, some, astray).mean) > hopeful) {
+      continue;
+    }
     Judged found = judged(surface, turned);
     if (candidate.errors.mean < found.errors.mean) { // led astray
       const Judged unturned = judged(surface, candidate.plane);
