@@ -277,6 +277,7 @@ void MainWindow::apply(const Preferences& preferences) {
   const Theme theme = theme_named(preferences.theme);
   apply_theme(*qApp, theme);
   viewport_->set_dark(theme == Theme::dark);
+  viewport_->set_coarse_while_moving(preferences.coarse_while_moving);
   viewport_->set_up_axis(preferences.z_up ? UpAxis::z : UpAxis::y);
   sections_->set_dark(theme == Theme::dark);
   welcome_->setStyleSheet(theme == Theme::dark ? "color: #c9ccd1" : "color: #4a4d52");

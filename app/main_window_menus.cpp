@@ -231,6 +231,18 @@ void MainWindow::make_view_menu() {
   z_up->setCheckable(true);
   connect(viewport_, &Viewport::cameraChanged, z_up,
           [this, z_up] { z_up->setChecked(viewport_->up_axis() == UpAxis::z); });
+  QAction* coarse =
+      add(menu, "coarse_while_moving", tr("&Coarse While Moving"), {},
+          tr("Large models are drawn with fewer triangles while they or the view move, if this "
+             "computer is slow to draw them"),
+          [this] {
+            preferences_.coarse_while_moving = !viewport_->coarse_while_moving();
+            viewport_->set_coarse_while_moving(preferences_.coarse_while_moving);
+            preferences_.save();
+          });
+  coarse->setCheckable(true);
+  connect(menu, &QMenu::aboutToShow, coarse,
+          [this, coarse] { coarse->setChecked(viewport_->coarse_while_moving()); });
   QMenu* standard = menu->addMenu(tr("&Standard Views"));
   const std::pair<QString, const char*> names[] = {{tr("Front"), "front"},
                                                    {tr("Back"), "back"},

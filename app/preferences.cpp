@@ -25,6 +25,7 @@ Preferences Preferences::load() {
       std::clamp(settings.value("autosave_seconds", p.autosave_seconds).toInt(), 0, 3600);
   p.ask_before_closing = settings.value("ask_before_closing", p.ask_before_closing).toBool();
   p.z_up = settings.value("z_up", p.z_up).toBool();
+  p.coarse_while_moving = settings.value("coarse_while_moving", p.coarse_while_moving).toBool();
   p.hints = settings.value("hints", p.hints).toBool();
   return p;
 }
@@ -35,6 +36,7 @@ void Preferences::save() const {
   settings.setValue("autosave_seconds", autosave_seconds);
   settings.setValue("ask_before_closing", ask_before_closing);
   settings.setValue("z_up", z_up);
+  settings.setValue("coarse_while_moving", coarse_while_moving);
   settings.setValue("hints", hints);
 }
 

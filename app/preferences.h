@@ -12,8 +12,9 @@ struct Preferences {
   QString theme = "light";   ///< "light" or "dark"
   int autosave_seconds = 60; ///< 0: never
   bool ask_before_closing = true;
-  bool z_up = false; ///< models stand upright along z, not y
-  bool hints = true; ///< the bar with the next step
+  bool z_up = false;               ///< models stand upright along z, not y
+  bool coarse_while_moving = true; ///< large models, where drawing them is slow
+  bool hints = true;               ///< the bar with the next step
 
   static Preferences load();
   void save() const;

@@ -67,6 +67,10 @@ std::span<const Triangle> Document::model_triangles() const {
   return model_ ? std::span<const Triangle>(model_->triangles) : std::span<const Triangle>();
 }
 
+std::span<const Triangle> Document::coarse_triangles() const {
+  return model_ ? std::span<const Triangle>(model_->coarse) : std::span<const Triangle>();
+}
+
 double Document::diagonal() const {
   if (model_) {
     return model_->diagonal;

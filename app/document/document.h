@@ -57,6 +57,8 @@ public:
   [[nodiscard]] std::span<const Vec3> model_normals() const;
   /// T triangles; they change with modelChanged() only.
   [[nodiscard]] std::span<const Triangle> model_triangles() const;
+  /// Model::coarse.
+  [[nodiscard]] std::span<const Triangle> coarse_triangles() const;
   /// The unit of all tolerances and tools: the model's diagonal, the cage's without a model, 1
   /// without either.
   [[nodiscard]] double diagonal() const;

@@ -1,5 +1,6 @@
 #include "app/document/model.h"
 
+#include "app/document/coarse_triangles.h"
 #include "deform/normals.h"
 #include "deform/weights_file.h"
 #include "io/read_mesh.h"
@@ -9,6 +10,13 @@
 #include <utility>
 
 namespace cagewright::app {
+namespace {
+
+// Any processor draws so many triangles thirty times a second.
+constexpr std::size_t drawn_at_once = 60000;
+constexpr std::size_t large = 150000;
+
+} // namespace
 
 Result<std::shared_ptr<const Model>> open_model(const std::filesystem::path& path,
                                                 const Progress& progress) {
@@ -32,6 +40,9 @@ prepare_model(PolygonMesh mesh, const std::filesystem::path& path, const Progres
   }
   progress(0, "cutting faces into triangles");
   model->triangles = triangulate(model->mesh).triangles;
+  if (model->triangles.size() > large) {
+    model->coarse = coarse_triangles(model->view(), drawn_at_once);
+  }
   progress(0.2, "normals");
   const NormalField normals(model->mesh, smooth_normals(model->mesh));
   model->normals.assign(normals.normals().begin(), normals.normals().end());

@@ -18,6 +18,8 @@ namespace cagewright::app {
 struct Model {
   PolygonMesh mesh;
   std::vector<Triangle> triangles; ///< T: the faces, cut
+  std::vector<Triangle> coarse;    ///< fewer, of the same vertices, to draw while a large model
+                                   ///< moves: see coarse_triangles(); none for small models
   std::vector<Vec3> normals;       ///< V smooth unit normals
   TriangleBvh bvh;                 ///< over the triangles
   FileNormals file_normals;        ///< as stored in the file, if any

@@ -41,7 +41,6 @@ struct FaceMark {
 
 /// What is drawn besides the model, in the model's coordinates.
 struct Marks {
-  std::vector<FaceMark> solids; ///< opaque
   std::vector<FaceMark> faces;  ///< translucent, in any order
   std::vector<LineMark> lines;  ///< hidden by the model, then faint
   std::vector<DotMark> dots;    ///< likewise
@@ -65,12 +64,16 @@ struct CanvasView {
   bool model = true;
   bool smooth = true;
   bool wireframe = false;
+  bool coarse = false; ///< the coarse triangles, if there are any, and no wireframe
+  bool keep = false;   ///< the framebuffer has GL_DEPTH24_STENCIL8: the model's picture may be kept
   double model_opacity_behind = 0.16; ///< of marks that the model hides
   Rgb background_top = {0.93F, 0.94F, 0.95F};
   Rgb background_bottom = {0.80F, 0.82F, 0.85F};
   Rgb model_color = {0.74F, 0.71F, 0.67F};
   Rgb wire_color = {0.15F, 0.15F, 0.17F};
 };
+
+struct MarkView;
 
 class Canvas {
 public:
@@ -84,23 +87,35 @@ public:
   [[nodiscard]] double scale() const { return scale_; }
 
   /// Another model: V positions, V unit normals, T triangles. Empty: none.
+  /// \param coarse  triangles of the same vertices to draw instead while `CanvasView::coarse`
   void set_model(std::span<const Vec3> positions, std::span<const Vec3> normals,
-                 std::span<const Triangle> triangles);
+                 std::span<const Triangle> triangles, std::span<const Triangle> coarse = {});
   /// The same triangles elsewhere.
   void move_model(std::span<const Vec3> positions, std::span<const Vec3> normals);
   /// V colours instead of one; empty: one.
   void set_model_colors(std::span<const Color> colors);
 
-  /// Draws to the framebuffer that is bound.
+  /// Opaque faces that are drawn with the model.
+  void set_solids(std::vector<FaceMark> solids);
+
+  /// Draws to the framebuffer that is bound. The picture of a large model is kept, so that marks
+  /// alone can change at little cost.
   void draw(const CanvasView& view, const Marks& marks, const Overlay& overlay);
+
+  /// How long the last picture of a large model took, with all triangles; 0 for others.
+  [[nodiscard]] double model_seconds() const { return model_seconds_; }
 
 private:
   struct Gl;
   explicit Canvas(std::unique_ptr<Gl> gl);
+  void draw_model(const CanvasView& view);
+  void draw_or_copy_model(const CanvasView& view);
+  [[nodiscard]] MarkView in_space(const CanvasView& view) const;
 
   std::unique_ptr<Gl> gl_;
   Vec3 center_ = Vec3::Zero();
   double scale_ = 1;
+  double model_seconds_ = 0;
 };
 
 } // namespace cagewright::app

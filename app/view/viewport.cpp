@@ -22,6 +22,10 @@ namespace {
 
 // A press becomes a drag when the mouse has gone so far, in pixels.
 constexpr double drag_distance = 4;
+// Pictures that take longer are drawn coarsely while something moves, in seconds.
+constexpr double slow_picture = 0.04;
+// So long after the last movement the picture is drawn with all triangles, in milliseconds.
+constexpr int rest_after = 250;
 
 Pixel pixel_of(const QPointF& p) {
   return {p.x(), p.y()};
@@ -47,9 +51,14 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
   setAccessibleName(tr("3D view"));
 
   const auto repaint = [this] { update(); };
+  layers_before_ = document_.layers();
+  rest_.setSingleShot(true);
+  rest_.setInterval(rest_after);
+  connect(&rest_, &QTimer::timeout, this, repaint);
   connect(&document_, &Document::modelChanged, this, &Viewport::model_changed);
   connect(&document_, &Document::modelMoved, this, [this] {
     dirty_.positions = true;
+    something_moves();
     update();
   });
   connect(&document_, &Document::cageChanged, this, [this] {
@@ -73,8 +82,11 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
     update();
   });
   connect(&document_, &Document::layersChanged, this, [this] {
-    dirty_.voxels = true;
-    dirty_.colors = true;
+    const Layers& layers = document_.layers();
+    dirty_.voxels = dirty_.voxels || layers.feature_voxels != layers_before_.feature_voxels ||
+                    layers.inner_voxels != layers_before_.inner_voxels;
+    dirty_.colors = dirty_.colors || layers.weights != layers_before_.weights;
+    layers_before_ = layers;
     update();
   });
   connect(&document_, &Document::selectionChanged, this, [this] {
@@ -99,8 +111,22 @@ Viewport::~Viewport() {
 
 // ---------------------------------------------------------------- the camera
 
+void Viewport::something_moves() {
+  rest_.start();
+}
+
+bool Viewport::draws_coarsely() const {
+  return coarse_while_moving_ && rest_.isActive() && canvas_->model_seconds() > slow_picture;
+}
+
+void Viewport::set_coarse_while_moving(bool on) {
+  coarse_while_moving_ = on;
+  update();
+}
+
 void Viewport::camera_moved() {
   forget_hover();
+  something_moves();
   Q_EMIT cameraChanged();
   update();
 }
@@ -257,7 +283,7 @@ void Viewport::upload() {
   }
   if (dirty_.model) {
     canvas_->set_model(document_.model_positions(), document_.model_normals(),
-                       document_.model_triangles());
+                       document_.model_triangles(), document_.coarse_triangles());
     dirty_.colors = true;
   } else if (dirty_.positions) {
     canvas_->move_model(document_.model_positions(), document_.model_normals());
@@ -276,10 +302,11 @@ void Viewport::upload() {
   }
   if (dirty_.voxels) {
     const Layers& layers = document_.layers();
-    voxels_.clear();
+    std::vector<FaceMark> voxels;
     if (document_.stages() && (layers.feature_voxels || layers.inner_voxels)) {
-      voxels_ = voxel_faces(*document_.stages(), layers.feature_voxels, layers.inner_voxels);
+      voxels = voxel_faces(*document_.stages(), layers.feature_voxels, layers.inner_voxels);
     }
+    canvas_->set_solids(std::move(voxels));
     dirty_.voxels = false;
   }
 }
@@ -293,7 +320,6 @@ Marks Viewport::make_marks() {
     add_grid(box, camera_, colors_, marks);
   }
   if (document_.stages()) {
-    marks.solids = voxels_;
     add_boxes(document_, marks);
   }
   if (document_.has_cage()) {
@@ -434,7 +460,10 @@ void Viewport::paintGL() {
     const double ratio = devicePixelRatioF();
     const auto device = [&](int length) { return static_cast<int>(std::lround(length * ratio)); };
     const Marks marks = make_marks();
-    canvas_->draw(canvas_view(device(width()), device(height()), ratio), marks, make_overlay());
+    CanvasView view = canvas_view(device(width()), device(height()), ratio);
+    view.coarse = draws_coarsely();
+    view.keep = true;
+    canvas_->draw(view, marks, make_overlay());
   }
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);

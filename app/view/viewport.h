@@ -14,6 +14,7 @@
 #include <QImage>
 #include <QJsonObject>
 #include <QOpenGLWidget>
+#include <QTimer>
 
 #include <memory>
 #include <optional>
@@ -52,6 +53,10 @@ public:
   [[nodiscard]] QImage picture(const QSize& size);
 
   void set_dark(bool dark);
+  /// Whether large models are drawn with fewer triangles while they or the camera move, if drawing
+  /// them takes long.
+  void set_coarse_while_moving(bool on);
+  [[nodiscard]] bool coarse_while_moving() const { return coarse_while_moving_; }
 
   [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
   /// Where the gizmo stands, while there is one.
@@ -99,6 +104,8 @@ private:
 
   // What is drawn
   void upload();
+  void something_moves();
+  [[nodiscard]] bool draws_coarsely() const;
   [[nodiscard]] Box3 scene_box() const;
   [[nodiscard]] Marks make_marks();
   [[nodiscard]] Overlay make_overlay() const;
@@ -139,8 +146,10 @@ private:
   std::unique_ptr<Canvas> canvas_;
   QString failure_; // of OpenGL
   Dirty dirty_;
-  std::vector<FaceMark> voxels_;
+  Layers layers_before_; // what the last change of layers changed
   bool with_texts_ = true;
+  bool coarse_while_moving_ = true;
+  QTimer rest_; // runs while something moves, and a moment longer
 
   CageGraph graph_;
   bool graph_is_stale_ = true;

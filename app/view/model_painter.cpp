@@ -1,0 +1,142 @@
+#include "app/view/model_painter.h"
+
+#include "app/view/canvas_shaders.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace cagewright::app {
+namespace {
+
+std::uint32_t packed_normal(const Vec3& n) { // 10 bits each, signed
+  const auto bits = [](double c) {
+    return static_cast<std::uint32_t>(std::lround(511 * std::clamp(c, -1.0, 1.0))) & 1023U;
+  };
+  return n.allFinite() ? bits(n.x()) | bits(n.y()) << 10U | bits(n.z()) << 20U : 0;
+}
+
+} // namespace
+
+Result<ModelPainter> ModelPainter::create() {
+  ModelPainter painter;
+  Result<gl::Program> model = gl::make_program(shaders::model_vertex, std::string(shaders::light) +
+                                                                          shaders::model_fragment);
+  if (!model) {
+    return model.error();
+  }
+  Result<gl::Program> wire = gl::make_program(shaders::wire_vertex, shaders::wire_fragment);
+  if (!wire) {
+    return wire.error();
+  }
+  painter.model_ = std::move(*model);
+  painter.wire_ = std::move(*wire);
+  painter.array_ = make_array();
+  painter.coarse_array_ = make_array();
+  painter.wire_array_ = make_array();
+  return painter;
+}
+
+void ModelPainter::set_triangles(std::span<const Triangle> triangles,
+                                 std::span<const Triangle> coarse) {
+  triangles_.assign(triangles.begin(), triangles.end());
+  corners_ = static_cast<GLsizei>(3 * triangles.size());
+  coarse_corners_ = static_cast<GLsizei>(3 * coarse.size());
+  has_edges_ = false;
+  has_colors_ = false;
+  glBindVertexArray(array_.id());
+  indices_.fill(GL_ELEMENT_ARRAY_BUFFER, triangles, GL_STATIC_DRAW);
+  glBindVertexArray(coarse_array_.id());
+  coarse_indices_.fill(GL_ELEMENT_ARRAY_BUFFER, coarse, GL_STATIC_DRAW);
+  glBindVertexArray(0);
+}
+
+void ModelPainter::move(std::vector<Eigen::Vector3f> positions, std::span<const Vec3> normals) {
+  vertices_ = positions.size();
+  normal_bits_.resize(positions.size());
+  parallel_for(0, positions.size(), 8192, [&](std::size_t i) {
+    normal_bits_[i] = i < normals.size() ? packed_normal(normals[i]) : 0;
+  });
+  positions_.fill(GL_ARRAY_BUFFER, std::span<const Eigen::Vector3f>(positions), GL_STREAM_DRAW);
+  normals_.fill(GL_ARRAY_BUFFER, std::span<const std::uint32_t>(normal_bits_), GL_STREAM_DRAW);
+  for (const gl::VertexArray* array : {&array_, &coarse_array_}) {
+    glBindVertexArray(array->id());
+    glBindBuffer(GL_ARRAY_BUFFER, positions_.id());
+    attribute(0, 3, GL_FLOAT, sizeof(Eigen::Vector3f), 0);
+    glBindBuffer(GL_ARRAY_BUFFER, normals_.id());
+    attribute(1, 4, GL_INT_2_10_10_10_REV, 4, 0);
+  }
+  glBindVertexArray(0);
+}
+
+void ModelPainter::set_colors(std::span<const Color> colors) {
+  has_colors_ = !colors.empty() && colors.size() == vertices_;
+  if (has_colors_) {
+    colors_.fill(GL_ARRAY_BUFFER, colors, GL_STREAM_DRAW);
+  }
+  for (const gl::VertexArray* array : {&array_, &coarse_array_}) {
+    glBindVertexArray(array->id());
+    if (has_colors_) {
+      glBindBuffer(GL_ARRAY_BUFFER, colors_.id());
+      attribute(2, 4, GL_UNSIGNED_BYTE, sizeof(Color), 0);
+    } else {
+      glDisableVertexAttribArray(2);
+    }
+  }
+  glBindVertexArray(0);
+}
+
+void ModelPainter::draw(const CanvasView& view) const {
+  const bool coarse = view.coarse && has_coarse();
+  const Uniforms uniforms(model_);
+  uniforms.set("clip", view.clip);
+  uniforms.set("axes", view.axes);
+  uniforms.set("one_color", view.model_color, has_colors_ ? 0.0F : 1.0F);
+  uniforms.set("smooth_normals", view.smooth ? 1 : 0);
+  glBindVertexArray(coarse ? coarse_array_.id() : array_.id());
+  glDrawElements(GL_TRIANGLES, coarse ? coarse_corners_ : corners_, GL_UNSIGNED_INT, nullptr);
+}
+
+void ModelPainter::make_edges() {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(3 * triangles_.size());
+  for (const Triangle& t : triangles_) {
+    for (int k = 0; k < 3; ++k) {
+      const Index a = t[k];
+      const Index b = t[(k + 1) % 3];
+      keys.push_back(std::uint64_t{std::min(a, b)} << 32U | std::max(a, b));
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  std::vector<Index> ends;
+  ends.reserve(2 * keys.size());
+  for (const std::uint64_t key : keys) {
+    ends.push_back(static_cast<Index>(key >> 32U));
+    ends.push_back(static_cast<Index>(key));
+  }
+  glBindVertexArray(wire_array_.id());
+  edges_.fill(GL_ELEMENT_ARRAY_BUFFER, std::span<const Index>(ends), GL_STATIC_DRAW);
+  glBindBuffer(GL_ARRAY_BUFFER, positions_.id());
+  attribute(0, 3, GL_FLOAT, sizeof(Eigen::Vector3f), 0);
+  glBindVertexArray(0);
+  edge_ends_ = static_cast<GLsizei>(ends.size());
+  has_edges_ = true;
+}
+
+void ModelPainter::draw_wireframe(const CanvasView& view) {
+  if (!has_edges_) {
+    make_edges();
+  }
+  const Uniforms uniforms(wire_);
+  uniforms.set("clip", view.clip);
+  const float alpha = 0.45F;
+  const Rgb& c = view.wire_color;
+  uniforms.set("one_color", Rgb{c[0] * alpha, c[1] * alpha, c[2] * alpha}, alpha);
+  glBindVertexArray(wire_array_.id());
+  glDrawElements(GL_LINES, edge_ends_, GL_UNSIGNED_INT, nullptr);
+}
+
+} // namespace cagewright::app

@@ -1,0 +1,46 @@
+/// \file
+/// Draws the model. Private to canvas.cpp.
+#pragma once
+
+#include "app/view/canvas.h"
+#include "app/view/gl_stream.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace cagewright::app {
+
+class ModelPainter {
+public:
+  /// Errors: not_available, when the driver refuses a shader.
+  static Result<ModelPainter> create();
+
+  /// See Canvas. Positions are those of the graphics card.
+  void set_triangles(std::span<const Triangle> triangles, std::span<const Triangle> coarse);
+  void move(std::vector<Eigen::Vector3f> positions, std::span<const Vec3> normals);
+  void set_colors(std::span<const Color> colors);
+
+  [[nodiscard]] bool empty() const { return corners_ == 0; }
+  [[nodiscard]] bool has_coarse() const { return coarse_corners_ > 0; }
+  [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
+
+  void draw(const CanvasView& view) const;
+  void draw_wireframe(const CanvasView& view);
+
+private:
+  void make_edges();
+
+  gl::Program model_, wire_;
+  gl::VertexArray array_, coarse_array_, wire_array_;
+  StreamBuffer positions_, normals_, colors_, indices_, coarse_indices_, edges_;
+  GLsizei corners_ = 0;
+  GLsizei coarse_corners_ = 0;
+  GLsizei edge_ends_ = 0;
+  bool has_edges_ = false;
+  bool has_colors_ = false;
+  std::size_t vertices_ = 0;
+  std::vector<Triangle> triangles_; // for the edges, when they are asked for
+  std::vector<std::uint32_t> normal_bits_;
+};
+
+} // namespace cagewright::app
