@@ -1,6 +1,7 @@
 #include "app/commands/cage_actions.h"
 
 #include "app/edit/edit_cage.h"
+#include "app/edit/mirror_edit.h"
 
 #include <utility>
 
@@ -97,6 +98,34 @@ Result<EditedCage> edited(CageAction action, const PolygonMesh& cage, const Sele
   }
 }
 
+/// The same on both sides of the mirror plane, as far as the cage is symmetric.
+Result<EditedCage> edited_alike(CageAction action, Editor& editor, const PolygonMesh& cage,
+                                const CageGraph& graph) {
+  const Document& document = editor.document();
+  const Selection& selection = document.selection();
+  const std::optional<Symmetry> symmetry = cage_symmetry(document);
+  if (!symmetry) {
+    Q_EMIT editor.message(Editor::tr("the cage is not symmetric about that plane"));
+    return edited(action, cage, selection, graph);
+  }
+  const Selection both = mirrored(selection, symmetry->partner, graph, true);
+  Result<EditedCage> result = edited(action, cage, both, graph);
+  if (!result) {
+    return result;
+  }
+  if (!is_mirrored(cage, *symmetry)) {
+    Q_EMIT editor.message(
+        Editor::tr("only parts of the cage are symmetric: both sides may differ"));
+    return result;
+  }
+  double side = 0; // on which more is selected
+  for (const Index v : vertices_of(selection, graph)) {
+    side += (cage.positions[v] - symmetry->point).dot(symmetry->normal);
+  }
+  return mirrored_edit(cage, *symmetry, *std::move(result), side,
+                       symmetry_tolerance * document.diagonal());
+}
+
 } // namespace
 
 bool changes_topology(CageAction action) {
@@ -135,11 +164,9 @@ bool perform(CageAction action, Editor& editor) {
         Editor::tr("the model is bound to this cage; go back to refining to change its faces"));
     return false;
   }
-  Selection selection = document.selection();
-  if (document.tools().symmetric) {
-    selection = with_mirror_images(document, graph);
-  }
-  Result<EditedCage> result = edited(action, cage, selection, graph);
+  Result<EditedCage> result = document.tools().symmetric
+                                  ? edited_alike(action, editor, cage, graph)
+                                  : edited(action, cage, document.selection(), graph);
   if (!result) {
     Q_EMIT editor.message(QString::fromStdString(result.error().message));
     return false;

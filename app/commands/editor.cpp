@@ -7,6 +7,22 @@
 
 namespace cagewright::app {
 
+namespace {
+
+/// The same shape of a cage that is at rest elsewhere: what a pose moves, it moves from there.
+SharedPositions moved_along(const SharedPositions& pose, const std::vector<Vec3>& old_rest,
+                            const std::vector<Vec3>& new_rest) {
+  std::vector<Vec3> positions = *pose;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (old_rest[v] != new_rest[v]) {
+      positions[v] += new_rest[v] - old_rest[v];
+    }
+  }
+  return std::make_shared<const std::vector<Vec3>>(std::move(positions));
+}
+
+} // namespace
+
 Editor::Editor(Document& document, QObject* parent)
     : QObject(parent), document_(document), live_check_(document) {
   undo_stack_.setUndoLimit(500);
@@ -64,6 +80,7 @@ void Editor::select(Selection selection) {
 
 void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
                           std::shared_ptr<const BoxDecomposition> stages, const QString& text) {
+  tell_of_lost_poses();
   State state;
   state.selection.mode = document_.selection().mode;
   state.stages = stages ? std::move(stages) : document_.stages();
@@ -72,7 +89,18 @@ void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
   change(std::move(state), text);
 }
 
+void Editor::tell_of_lost_poses() {
+  const State& state = document_.state();
+  if (!state.poses.empty() || !state.time_line.keys.empty()) {
+    Q_EMIT message(
+        tr("%n poses and keyframes fitted the cage before, and went with it; undo brings "
+           "them back",
+           nullptr, static_cast<int>(state.poses.size() + state.time_line.keys.size())));
+  }
+}
+
 void Editor::edit_topology(PolygonMesh cage, Selection selection, const QString& text) {
+  tell_of_lost_poses();
   State state;
   state.selection = std::move(selection);
   state.stages = document_.stages();
@@ -83,6 +111,14 @@ void Editor::edit_topology(PolygonMesh cage, Selection selection, const QString&
 
 void Editor::bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const PolygonMesh> rest) {
   State state = document_.state();
+  if (state.rest && state.rest->positions != rest->positions) {
+    for (Pose& pose : state.poses) {
+      pose.positions = moved_along(pose.positions, state.rest->positions, rest->positions);
+    }
+    for (Keyframe& key : state.time_line.keys) {
+      key.positions = moved_along(key.positions, state.rest->positions, rest->positions);
+    }
+  }
   state.binding = std::move(binding);
   state.cage = std::make_shared<const std::vector<Vec3>>(rest->positions);
   state.rest = std::move(rest);

@@ -61,7 +61,8 @@ public:
   /// The cage after an edit of its topology, in refine mode: vertices and faces as they come. Poses
   /// and keyframes, which fit the old one, go.
   void edit_topology(PolygonMesh cage, Selection selection, const QString& text);
-  /// To deform mode: `rest` is the cage that the binding was made for.
+  /// To deform mode: `rest` is the cage that the binding was made for, with the topology of the
+  /// present one. Poses and keyframes keep what they move from the rest, wherever that is now.
   void bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const PolygonMesh> rest);
   /// Back to refine mode, with the cage at rest. Poses and keyframes stay while the topology does.
   void refine();
@@ -89,6 +90,8 @@ Q_SIGNALS:
   void message(const QString& text);
 
 private:
+  void tell_of_lost_poses();
+
   struct Move {
     std::vector<Index> vertices;
     State before;

@@ -292,6 +292,45 @@ TEST_F(SessionTest, ExportsWhatIsShownAndEveryPose) {
   EXPECT_TRUE(failures_.empty());
 }
 
+TEST_F(SessionTest, KeepsWhatPosesMoveWhenTheCageIsRefined) {
+  open_and_bind();
+  const std::vector<Vec3> rest = cage();
+  drag(2, {0.2, 0.1, 0});
+  session_.editor().add_pose("bent");
+  session_.editor().set_keyframe(5);
+  session_.editor().refine();
+  drag(2, {0, 0, 0.03});
+  drag(7, {0.02, 0, 0});
+  session_.bind();
+  wait();
+  ASSERT_EQ(session_.document().mode(), Mode::deform);
+  session_.editor().apply_pose(0);
+  std::vector<Vec3> expected = rest;
+  expected[2] += Vec3(0.2, 0.1, 0.03);
+  expected[7] += Vec3(0.02, 0, 0);
+  EXPECT_LT(greatest_distance(cage(), expected), 1e-15);
+  const State& state = session_.document().state();
+  EXPECT_EQ(*state.time_line.keys[0].positions, *state.poses[0].positions);
+  while (session_.editor().undo_stack().canUndo()) {
+    session_.editor().undo_stack().undo();
+  }
+  EXPECT_EQ(cage(), rest);
+}
+
+TEST_F(SessionTest, SaysThatPosesGoWithTheCageTheyFit) {
+  open_and_bind();
+  session_.editor().add_pose("one");
+  session_.load_cage(path("cage.obj"));
+  std::string said;
+  QObject::connect(&session_, &Session::message,
+                   [&](const QString& text) { said += text.toStdString(); });
+  wait();
+  EXPECT_TRUE(session_.document().state().poses.empty());
+  EXPECT_NE(said.find("undo brings them back"), std::string::npos) << said;
+  session_.editor().undo_stack().undo();
+  EXPECT_EQ(session_.document().state().poses.size(), 1U);
+}
+
 TEST_F(SessionTest, ExportsASequenceAlongTheKeyframes) {
   open_and_bind();
   session_.document().set_time(1);

@@ -1,6 +1,10 @@
 #include "app/view/viewport.h"
 
+#include "app/document/binding.h"
+#include "app/edit/cage_watch.h"
+#include "app/edit/mirror_edit.h"
 #include "app/edit/select.h"
+#include "app/jobs/deform_loop.h"
 #include "core/random.h"
 #include "mesh/shapes.h"
 #include "quads.h"
@@ -376,6 +380,120 @@ TEST_F(ViewportWith, MovesPartnersWhenSymmetric) {
   const std::optional<Symmetry> symmetry = find_symmetry(now, 0, 1e-9);
   ASSERT_TRUE(symmetry);
   EXPECT_EQ(std::count(symmetry->partner.begin(), symmetry->partner.end(), Symmetry::none), 0);
+}
+
+TEST_F(ViewportWith, MovesABoundModelByTheMouse) {
+  DeformLoop loop(document);
+  const auto rest = std::make_shared<const PolygonMesh>(document.cage());
+  Result<Deformer> deformer = Deformer::bind(document.model()->mesh, *rest);
+  ASSERT_TRUE(deformer) << deformer.error().message;
+  editor.bind(std::make_shared<const Binding>(*std::move(deformer)), rest);
+  loop.finish();
+  const std::vector<Vec3> before(document.model_positions().begin(),
+                                 document.model_positions().end());
+  const Index v = front_vertex();
+  QTest::mouseClick(&view, Qt::LeftButton, {}, at_vertex(v));
+  settle();
+  ASSERT_TRUE(view.gizmo());
+  const Vec3 origin = view.gizmo()->origin;
+  const double pixel = view.camera().pixel_size(origin);
+  drag(at(origin + 50 * pixel * Vec3::UnitX()), at(origin + 110 * pixel * Vec3::UnitX()));
+  loop.finish();
+  keep("deformed-by-the-mouse");
+  const Vec3 moved = document.cage_positions()[v] - rest->positions[v];
+  EXPECT_GT(moved.x(), 30 * pixel);
+  EXPECT_NEAR(moved.y(), 0, 1e-12);
+  // The model follows as the weights say, which add up to the vertex's own share.
+  double greatest = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Vec3 step = document.model_positions()[i] - before[i];
+    EXPECT_NEAR(step.y(), 0, 1e-6);
+    EXPECT_NEAR(step.z(), 0, 1e-6);
+    greatest = std::max(greatest, step.x() / moved.x());
+  }
+  EXPECT_GT(greatest, 0.02);
+  EXPECT_LT(greatest, 1);
+  editor.undo_stack().undo();
+  loop.finish();
+  EXPECT_TRUE(document.model_positions()[7].isApprox(before[7], 1e-12));
+}
+
+TEST_F(ViewportWith, StopsAtContactWhenDraggedByTheMouse) {
+  ToolSettings tools;
+  tools.stop_at_contact = true;
+  document.set_tools(tools);
+  QSignalSpy messages(&editor, &Editor::message);
+  view.set_standard_view("front");
+  settle();
+  // A vertex in the middle of the front, pushed into the model.
+  key(Qt::Key_3);
+  QTest::mouseClick(&view, Qt::LeftButton, {}, QPoint(320, 240));
+  ASSERT_EQ(document.selection().faces.size(), 1U);
+  view.set_standard_view("right");
+  settle();
+  ASSERT_TRUE(view.gizmo());
+  const Vec3 origin = view.gizmo()->origin;
+  const double pixel = view.camera().pixel_size(origin);
+  drag(at(origin + 50 * pixel * Vec3::UnitZ()),
+       at(origin + (50 - 1.5 / pixel) * pixel * Vec3::UnitZ()));
+  keep("stopped-at-contact");
+  EXPECT_GT(messages.count(), 0);
+  const CageWatch judge(document.cage(),
+                        std::make_shared<const WatchedModel>(document.model()->view()));
+  EXPECT_TRUE(judge.is_valid()) << "the drag went further than it may";
+  const std::vector<Index> corners = vertices_of(document.selection(), CageGraph(document.cage()));
+  EXPECT_LT(document.cage_positions()[corners[0]].z(), 1) << "it went nowhere";
+  EXPECT_GT(document.cage_positions()[corners[0]].z(), 0);
+}
+
+TEST_F(ViewportWith, ExtrudesBothSidesAlikeWhenSymmetric) {
+  ToolSettings tools;
+  tools.symmetric = true;
+  document.set_tools(tools);
+  view.set_standard_view("right");
+  settle();
+  key(Qt::Key_3);
+  QTest::mouseClick(&view, Qt::LeftButton, {}, QPoint(320, 240));
+  ASSERT_EQ(document.selection().faces.size(), 1U);
+  const std::size_t faces = document.cage_rest().face_count();
+  key(Qt::Key_E);
+  key(Qt::Key_Return);
+  EXPECT_EQ(document.cage_rest().face_count(), faces + 8);
+  const PolygonMesh cage = document.cage();
+  EXPECT_TRUE(is_mirrored(cage, find_partners(cage.positions, Vec3::Zero(), Vec3::UnitX(), 1e-12)));
+}
+
+TEST_F(ViewportWith, StandsModelsUpAlongZ) {
+  view.set_up_axis(UpAxis::z);
+  view.set_standard_view("front");
+  EXPECT_TRUE(Vec3(view.camera().axes().row(1)).isApprox(Vec3::UnitZ()));
+  EXPECT_TRUE(Vec3(view.camera().axes().row(2)).isApprox(Vec3(-Vec3::UnitY())));
+  const QJsonObject state = view.camera_state();
+  view.set_up_axis(UpAxis::y);
+  view.set_camera_state(state);
+  EXPECT_EQ(view.up_axis(), UpAxis::z);
+}
+
+TEST_F(ViewportWith, DrawsALargeModelAsItIsOnceItRests) {
+  Result<std::shared_ptr<const Model>> large = prepare_model(PolygonMesh(make_icosphere(7)), {});
+  ASSERT_TRUE(large);
+  EXPECT_GT((*large)->coarse.size(), 5000U);
+  EXPECT_LT((*large)->coarse.size(), (*large)->triangles.size() / 3);
+  document.set_model(*large);
+  set_cage(test::quad_cube(3));
+  view.frame_all();
+  view.set_coarse_while_moving(false);
+  settle();
+  const QImage with_all = view.grabFramebuffer();
+  // Marks alone change, then are as before: the picture of the model is the kept one.
+  key(Qt::Key_A);
+  EXPECT_NE(view.grabFramebuffer(), with_all);
+  key(Qt::Key_A, Qt::AltModifier);
+  EXPECT_EQ(view.grabFramebuffer(), with_all);
+  view.set_coarse_while_moving(true);
+  view.frame_all(); // moves the camera, though not elsewhere
+  view.grabFramebuffer();
+  EXPECT_TRUE(QTest::qWaitFor([&] { return view.grabFramebuffer() == with_all; }, 20000));
 }
 
 TEST_F(ViewportWith, TakesPicturesOfAnySizeWithoutTheGizmo) {

@@ -427,9 +427,12 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
       actions.append(action);
     }
   }
-  // Whatever asks a question is answered with no.
+  // Whatever asks a question is answered with no, and menus that open are closed.
   QTimer refuse;
   QObject::connect(&refuse, &QTimer::timeout, [] {
+    if (QWidget* menu = QApplication::activePopupWidget()) {
+      menu->close();
+    }
     if (auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget())) {
       dialog->reject();
     }
