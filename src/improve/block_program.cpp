@@ -127,8 +127,9 @@ private:
       term_block_.push_back(at(std::max(t.row, t.column), std::min(t.row, t.column)));
     }
     for (const BlockConstraint& c : constraints_) {
-      for_pairs(c,
-                [&](int i, int j) { constraint_block_.push_back(at(c.vertex[i], c.vertex[j])); });
+      for_pairs(c, [&](int i, int j) {
+        constraint_block_.push_back(at(c.vertex_of(i), c.vertex_of(j)));
+      });
     }
     blocks_.resize(all.size());
     std::vector<Eigen::Triplet<double>> entries;
@@ -156,9 +157,9 @@ private:
   // Calls with the pairs (i, j) of a constraint's corners that make blocks on or below the
   // diagonal.
   template <class Visit> static void for_pairs(const BlockConstraint& c, const Visit& visit) {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        if (c.weight[i] != 0 && c.weight[j] != 0 && c.vertex[i] >= c.vertex[j]) {
+    for (int i = 0; i < c.size(); ++i) {
+      for (int j = 0; j < c.size(); ++j) {
+        if (c.weight_of(i) != 0 && c.weight_of(j) != 0 && c.vertex_of(i) >= c.vertex_of(j)) {
           visit(i, j);
         }
       }
@@ -180,7 +181,8 @@ private:
     for (Eigen::Index k = 0; k < weights.size(); ++k) {
       const BlockConstraint& c = constraints_[k];
       const Mat3 outer = weights[k] * c.direction * c.direction.transpose();
-      for_pairs(c, [&](int i, int j) { blocks_[*block++] += c.weight[i] * c.weight[j] * outer; });
+      for_pairs(
+          c, [&](int i, int j) { blocks_[*block++] += c.weight_of(i) * c.weight_of(j) * outer; });
     }
     auto slot = slot_.begin();
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
@@ -202,9 +204,9 @@ private:
     for (std::size_t k = 0; k < constraints_.size(); ++k) {
       const BlockConstraint& c = constraints_[k];
       double sum = 0;
-      for (int i = 0; i < 3; ++i) {
-        sum +=
-            c.weight[i] * c.direction.dot(x.segment<3>(static_cast<Eigen::Index>(3) * c.vertex[i]));
+      for (int i = 0; i < c.size(); ++i) {
+        sum += c.weight_of(i) *
+               c.direction.dot(x.segment<3>(static_cast<Eigen::Index>(3) * c.vertex_of(i)));
       }
       result[static_cast<Eigen::Index>(k)] = sum;
     }
@@ -215,9 +217,9 @@ private:
     Vector result = Vector::Zero(size_);
     for (std::size_t k = 0; k < constraints_.size(); ++k) {
       const BlockConstraint& c = constraints_[k];
-      for (int i = 0; i < 3; ++i) {
-        result.segment<3>(static_cast<Eigen::Index>(3) * c.vertex[i]) +=
-            z[static_cast<Eigen::Index>(k)] * c.weight[i] * c.direction;
+      for (int i = 0; i < c.size(); ++i) {
+        result.segment<3>(static_cast<Eigen::Index>(3) * c.vertex_of(i)) +=
+            z[static_cast<Eigen::Index>(k)] * c.weight_of(i) * c.direction;
       }
     }
     return result;

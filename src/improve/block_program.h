@@ -11,12 +11,20 @@
 
 namespace cagewright {
 
-/// One inequality over up to three vertices: sum of weight[i] * direction . x[vertex[i]] >= bound.
+/// One inequality over three or four vertices: the sum of weight_of(i) * direction .
+/// x[vertex_of(i)]
+/// >= bound.
 struct BlockConstraint {
   Triangle vertex{};
   std::array<double, 3> weight{};
   Vec3 direction = Vec3::Zero();
   double bound = 0;
+  Index fourth_vertex = 0;
+  double fourth_weight = 0; ///< 0: there are three
+
+  [[nodiscard]] int size() const { return fourth_weight != 0 ? 4 : 3; }
+  [[nodiscard]] Index vertex_of(int i) const { return i < 3 ? vertex[i] : fourth_vertex; }
+  [[nodiscard]] double weight_of(int i) const { return i < 3 ? weight[i] : fourth_weight; }
 };
 
 /// A quadratic function of N points: 1/2 x.H x + g.x. H is made of 3 x 3 blocks, of which those

@@ -131,8 +131,14 @@ DirectionField::DirectionField(TriangleView cage)
 double DirectionField::misalignment_at(Index v, const Vec3& way) const {
   const Vec3& n = normals_[v];
   const Vec3 y = n.cross(directions_[v]);
-  const double angle = std::atan2(y.dot(way), directions_[v].dot(way));
-  return clarity_[v] * (1 - std::cos(4 * angle)) / 2;
+  const double along = std::pow(directions_[v].dot(way), 2);
+  const double across = std::pow(y.dot(way), 2);
+  const double length = along + across;
+  if (!(length > 0)) {
+    return 0;
+  }
+  // (1 - cos 4a) / 2 = sin^2 2a
+  return clarity_[v] * 4 * (along / length) * (across / length);
 }
 
 double DirectionField::misalignment(Index a, Index b, const Vec3& way) const {

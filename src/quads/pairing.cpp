@@ -7,9 +7,8 @@
 
 namespace cagewright {
 
-double cost_of(const QuadCage& cage, const DirectionField& field, const Taste& taste,
+double cost_of(std::span<const Vec3> x, const DirectionField& field, const Taste& taste,
                const CageFace& face) {
-  const std::vector<Vec3>& x = cage.positions();
   double cost = face_defect(x, face, taste.wishes) + (face.tentative ? taste.tentative : 0);
   for (int i = 0; i < face.size; ++i) {
     const Index a = face[i];
@@ -47,12 +46,12 @@ std::size_t pair_triangles(QuadCage& cage, const QuadGuard& guard, const Directi
   const bool tentative = taste.wishes.beyond > 0;
   parallel_for(0, pairs.size(), 1, [&](std::size_t i) {
     PairOfTriangles& pair = pairs[i];
-    const double cost = cost_of(cage, field, taste, pair.quad);
+    const double cost = cost_of(cage.positions(), field, taste, pair.quad);
     if (cost < unfit &&
         guard.allows(cage, boxes, std::array{pair.left, pair.right}, {&pair.quad, 1}, tentative)) {
-      costs[i] = cost_of(cage, field, taste, pair.quad) -
-                 cost_of(cage, field, taste, cage.face(pair.left)) -
-                 cost_of(cage, field, taste, cage.face(pair.right));
+      costs[i] = cost_of(cage.positions(), field, taste, pair.quad) -
+                 cost_of(cage.positions(), field, taste, cage.face(pair.left)) -
+                 cost_of(cage.positions(), field, taste, cage.face(pair.right));
     }
   });
   std::vector<PossiblePair> possible;

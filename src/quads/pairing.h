@@ -16,7 +16,7 @@ struct Taste {
 };
 
 /// face_defect() and the misalignment of the face's sides, each of which belongs to two faces.
-double cost_of(const QuadCage& cage, const DirectionField& field, const Taste& taste,
+double cost_of(std::span<const Vec3> positions, const DirectionField& field, const Taste& taste,
                const CageFace& face);
 
 /// Two triangles with a common side, and the quad that they cover.

@@ -62,12 +62,34 @@ void QuadCage::replace(std::span<const Index> removed, std::span<const CageFace>
   }
 }
 
+void QuadCage::renumber_faces() {
+  std::erase_if(faces_, [](const CageFace& face) { return face.size == 0; });
+  for (std::vector<Index>& faces : around_) {
+    faces.clear();
+  }
+  for (Index f = 0; f < face_end(); ++f) {
+    for (const Index v : faces_[f].span()) {
+      around_[v].push_back(f);
+    }
+  }
+}
+
 PolygonMesh QuadCage::to_polygons() const {
   PolygonMesh mesh;
-  mesh.positions = positions_;
+  std::vector<Index> number(positions_.size(), no_index);
+  for (Index v = 0; v < vertex_end(); ++v) {
+    if (!around_[v].empty()) {
+      number[v] = static_cast<Index>(mesh.positions.size());
+      mesh.positions.push_back(positions_[v]);
+    }
+  }
   for (const CageFace& face : faces_) {
     if (face.size != 0) {
-      mesh.add_face(face.span());
+      std::array<Index, 4> corners{};
+      for (int i = 0; i < face.size; ++i) {
+        corners[i] = number[face[i]];
+      }
+      mesh.add_face({corners.data(), static_cast<std::size_t>(face.size)});
     }
   }
   return mesh;

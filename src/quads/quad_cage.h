@@ -73,16 +73,23 @@ public:
   [[nodiscard]] Index face_left_of(Index a, Index b) const;
   [[nodiscard]] bool on_border(Index v) const { return on_border_[v] != 0; }
   [[nodiscard]] bool has_border() const { return has_border_; }
+  /// Whether just one face has the side between a and b.
+  [[nodiscard]] bool is_border(Index a, Index b) const {
+    return (face_left_of(a, b) == no_index) != (face_left_of(b, a) == no_index);
+  }
 
   /// Numbers of the new faces follow face_end(). The border does not change.
   void replace(std::span<const Index> removed, std::span<const CageFace> added);
+
+  /// Numbers the faces anew, without gaps.
+  void renumber_faces();
 
   /// The same corners, turned or no longer tentative.
   void set_face(Index f, const CageFace& face) { faces_[f] = face; }
 
   void set_positions(std::vector<Vec3> positions) { positions_ = std::move(positions); }
 
-  /// All faces, in the order of their numbers, over all vertices.
+  /// All faces, in the order of their numbers, over the vertices that they use, in order.
   [[nodiscard]] PolygonMesh to_polygons() const;
 
 private:

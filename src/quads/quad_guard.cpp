@@ -29,7 +29,29 @@ bool has_side(const CageFace& face, Index a, Index b) {
   return false;
 }
 
-/// Two faces may have one corner or one side in common, which they run along opposite ways.
+bool crosses(std::span<const Vec3> positions, const Triangle& p, const CageFace& t) {
+  const Corners at_p = at(positions, p);
+  const Box3 box = box_of(at_p);
+  for (const Triangle& q : FaceParts(t)) {
+    const Corners at_q = at(positions, q);
+    if (box.intersects(box_of(at_q)) && faces_cross(p, at_p, q, at_q)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool cross(std::span<const Vec3> positions, const CageFace& s, const CageFace& t) {
+  if (!fit_together(s, t)) {
+    return true;
+  }
+  const FaceParts parts(s);
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const Triangle& p) { return crosses(positions, p, t); });
+}
+
+} // namespace
+
 bool fit_together(const CageFace& s, const CageFace& t) {
   std::array<Index, 4> shared{};
   int count = 0;
@@ -42,25 +64,6 @@ bool fit_together(const CageFace& s, const CageFace& t) {
          (count == 2 && ((has_side(s, shared[0], shared[1]) && has_side(t, shared[1], shared[0])) ||
                          (has_side(s, shared[1], shared[0]) && has_side(t, shared[0], shared[1]))));
 }
-
-bool cross(std::span<const Vec3> positions, const CageFace& s, const CageFace& t) {
-  if (!fit_together(s, t)) {
-    return true;
-  }
-  for (const Triangle& p : FaceParts(s)) {
-    const Corners at_p = at(positions, p);
-    const Box3 box = box_of(at_p);
-    for (const Triangle& q : FaceParts(t)) {
-      const Corners at_q = at(positions, q);
-      if (box.intersects(box_of(at_q)) && faces_cross(p, at_p, q, at_q)) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-} // namespace
 
 Box3 box_of(std::span<const Vec3> positions, const CageFace& face) {
   Box3 box;
@@ -88,19 +91,33 @@ bool QuadGuard::is_clear(std::span<const Vec3> positions, const CageFace& face) 
   if (parts.count < 4) {
     return true;
   }
-  const Box3 box = cagewright::box_of(positions, face);
+  return !encloses_a_part(positions, face);
+}
+
+bool QuadGuard::encloses_a_part(std::span<const Vec3> positions, const CageFace& quad) const {
+  const FaceParts parts(quad, FaceParts::Of::all);
+  const Box3 box = cagewright::box_of(positions, quad);
   for (const ModelSurface::Part& piece : model_->parts) {
     if (box.contains(piece.box)) {
-      double angle = 0; // of the tetrahedron between the two cuttings
+      double angle = 0;
       for (int k = 0; k < 4; ++k) {
         angle += (k < 2 ? 1 : -1) * solid_angle(piece.point, at(positions, parts.triangles[k]));
       }
       if (std::abs(angle) > 2 * std::numbers::pi) {
-        return false;
+        return true;
       }
     }
   }
-  return true;
+  return false;
+}
+
+bool QuadGuard::is_free(const QuadCage& cage, std::span<const Index> faces,
+                        const Triangle& part) const {
+  const std::vector<Vec3>& x = cage.positions();
+  return !is_degenerate(x[part[0]], x[part[1]], x[part[2]]) &&
+         !model_->tree.too_near(at(x, part), clearance_) &&
+         std::none_of(faces.begin(), faces.end(),
+                      [&](Index f) { return crosses(x, part, cage.face(f)); });
 }
 
 bool QuadGuard::is_crossed(const QuadCage& cage, std::span<const Vec3> positions,
@@ -125,15 +142,18 @@ bool QuadGuard::is_crossed(const QuadCage& cage, std::span<const Vec3> positions
 
 bool QuadGuard::loses_a_part(const QuadCage& cage, std::span<const Index> removed,
                              std::span<const CageFace> added) const {
+  const std::vector<Vec3>& x = cage.positions();
   Box3 box;
   for (const Index f : removed) {
     box.extend(cagewright::box_of(cage.positions(), cage.face(f)));
   }
   const auto angle_of = [&](const Vec3& p, const CageFace& face) {
     const FaceParts parts(face);
-    double angle = solid_angle(p, at(cage.positions(), parts.triangles[0]));
-    if (face.is_quad()) {
-      angle += solid_angle(p, at(cage.positions(), parts.triangles[1]));
+    const Vec3 image(-p.x(), p.y(), p.z());
+    double angle = 0;
+    for (int k = 0; k < std::min(2, parts.count); ++k) {
+      angle += solid_angle(p, at(x, parts.triangles[k]));
+      angle += cage.has_border() ? solid_angle(image, at(x, parts.triangles[k])) : 0;
     }
     return angle;
   };
@@ -162,47 +182,57 @@ bool QuadGuard::is_sound(const QuadCage& cage, std::span<const Vec3> positions,
          !is_crossed(cage, positions, boxes, quad, itself) && is_clear(positions, quad);
 }
 
-bool QuadGuard::allows(const QuadCage& cage, std::span<const Box3> boxes,
-                       std::span<const Index> removed, std::span<CageFace> added,
-                       bool tentative) const {
-  const std::vector<Vec3>& positions = cage.positions();
-  if (cage.has_border()) {
-    for (const CageFace& face : added) {
-      // What joins two vertices of the mirror plane would coincide with its mirror image.
-      for (int i = 0; i < face.size; ++i) {
-        for (int j = i + 1; j < face.size; ++j) {
-          const Index a = face[i];
-          const Index b = face[j];
-          const bool is_border =
-              (cage.face_left_of(a, b) == no_index) != (cage.face_left_of(b, a) == no_index);
-          if (cage.on_border(a) && cage.on_border(b) && !is_border) {
-            return false;
-          }
+bool QuadGuard::keeps_halves_apart(const QuadCage& cage, std::span<const CageFace> added) {
+  if (!cage.has_border()) {
+    return true;
+  }
+  for (const CageFace& face : added) {
+    for (int i = 0; i < face.size; ++i) {
+      for (int j = i + 1; j < face.size; ++j) {
+        const Index a = face[i];
+        const Index b = face[j];
+        if (cage.on_border(a) && cage.on_border(b) && !cage.is_border(a, b)) {
+          return false;
         }
       }
     }
   }
+  return true;
+}
+
+bool QuadGuard::fits(const QuadCage& cage, std::span<const Box3> boxes,
+                     std::span<const Index> without, std::span<const CageFace> with, CageFace& face,
+                     bool tentative) const {
+  const std::vector<Vec3>& positions = cage.positions();
+  const auto fits_so = [&] {
+    const bool is_firm_quad = face.is_quad() && !face.tentative;
+    return (!is_firm_quad || shape_of(corners_of(positions, face)).within(limits_)) &&
+           !is_crossed(cage, positions, boxes, face, no_index, without, with) &&
+           is_clear(positions, face);
+  };
+  face.tentative = false;
+  if (fits_so()) {
+    return true;
+  }
+  if (!tentative || !face.is_quad()) {
+    return false;
+  }
+  face.tentative = true;
+  if (fits_so()) {
+    return true;
+  }
+  face = face.turned(1);
+  return fits_so();
+}
+
+bool QuadGuard::allows(const QuadCage& cage, std::span<const Box3> boxes,
+                       std::span<const Index> removed, std::span<CageFace> added,
+                       bool tentative) const {
+  if (!keeps_halves_apart(cage, added)) {
+    return false;
+  }
   for (std::size_t i = 0; i < added.size(); ++i) {
-    const auto fits = [&](const CageFace& face) {
-      const bool is_firm_quad = face.is_quad() && !face.tentative;
-      return (!is_firm_quad || shape_of(corners_of(positions, face)).within(limits_)) &&
-             !is_crossed(cage, positions, boxes, face, no_index, removed, added.first(i)) &&
-             is_clear(positions, face);
-    };
-    CageFace& face = added[i];
-    face.tentative = false;
-    if (fits(face)) {
-      continue;
-    }
-    if (!tentative || !face.is_quad()) {
-      return false;
-    }
-    face.tentative = true;
-    if (fits(face)) {
-      continue;
-    }
-    face = face.turned(1);
-    if (!fits(face)) {
+    if (!fits(cage, boxes, removed, added.first(i), added[i], tentative)) {
       return false;
     }
   }

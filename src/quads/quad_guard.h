@@ -23,6 +23,14 @@ public:
   [[nodiscard]] double clearance() const { return clearance_; }
   [[nodiscard]] const QuadLimits& limits() const { return limits_; }
 
+  /// True when the triangle has an area, keeps clear of the model and crosses none of these faces
+  /// of the cage; whether they fit together otherwise is not asked.
+  [[nodiscard]] bool is_free(const QuadCage& cage, std::span<const Index> faces,
+                             const Triangle& part) const;
+
+  /// True when some part of the model is inside the tetrahedron between the quad's two cuttings.
+  [[nodiscard]] bool encloses_a_part(std::span<const Vec3> positions, const CageFace& quad) const;
+
   /// True when no part of the face comes nearer to the model than the clearance.
   [[nodiscard]] bool is_clear(std::span<const Vec3> positions, const CageFace& face) const;
 
@@ -33,17 +41,27 @@ public:
                                 std::span<const Index> without = {},
                                 std::span<const CageFace> with = {}) const;
 
+  /// True when the face may stand in the cage without the faces `without`, beside `with`. A quad
+  /// that would be valid along one diagonal only is made tentative if that is allowed.
+  [[nodiscard]] bool fits(const QuadCage& cage, std::span<const Box3> boxes,
+                          std::span<const Index> without, std::span<const CageFace> with,
+                          CageFace& face, bool tentative) const;
+
   /// True when some part of the model lies between the old faces and the new ones, which have the
   /// same border.
   [[nodiscard]] bool loses_a_part(const QuadCage& cage, std::span<const Index> removed,
                                   std::span<const CageFace> added) const;
 
-  /// True when the exchange leaves the cage valid. Quads that would be valid along one diagonal
-  /// only are made tentative if that is allowed. Border vertices of a half cage are joined by
-  /// its border alone.
+  /// True when the exchange leaves the cage valid: each new face fits(), the halves of a symmetric
+  /// cage stay apart, and no part of the model is lost.
   [[nodiscard]] bool allows(const QuadCage& cage, std::span<const Box3> boxes,
                             std::span<const Index> removed, std::span<CageFace> added,
                             bool tentative) const;
+
+  /// True when the faces join vertices of a half cage's border along the border only: anything
+  /// else would coincide with its mirror image.
+  [[nodiscard]] static bool keeps_halves_apart(const QuadCage& cage,
+                                               std::span<const CageFace> added);
 
   /// True when the quad is within the limits, clear of the model and crosses nothing, along either
   /// diagonal.
@@ -57,6 +75,9 @@ private:
 };
 
 Box3 box_of(std::span<const Vec3> positions, const CageFace& face);
+
+/// Two faces may have one corner or one side in common, which they run along opposite ways.
+bool fit_together(const CageFace& s, const CageFace& t);
 
 /// By number; empty for faces that are not there.
 std::vector<Box3> face_boxes(const QuadCage& cage, std::span<const Vec3> positions);

@@ -42,6 +42,11 @@ bool border_is_in_plane(const QuadCage& cage) {
   return true;
 }
 
+// How far beyond the limits quads may be at first.
+constexpr double wide_bend = 30; // degrees more
+constexpr double wide_least_angle = 5;
+constexpr double wide_angle = 175;
+
 /// Each quad begins at a corner of its shorter diagonal.
 void turn_quads(QuadCage& cage) {
   std::vector<Index> removed;
@@ -166,27 +171,35 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   make_room.steps = 3;
   make_room.keep = options.clearance + options.room;
   const QuadGuard strict(surface, clearance, options.limits);
-  relax_quads(cage, strict, objective, make_room, progress.part(0, 0.2));
+  relax_quads(cage, strict, objective, make_room, progress.part(0, 0.1));
   const DirectionField field(cut(cage));
 
+  // From much room and wide limits to none and those asked for.
   constexpr int rounds = 6;
   for (int round = 0; round < rounds; ++round) {
+    const Progress part =
+        progress.part(0.1 + 0.9 * round / rounds, 0.1 + 0.9 * (round + 1) / rounds);
+    const bool is_last = round == rounds - 1;
     const double slack = std::max(0.0, 1 - round / (rounds - 2.0));
     QuadLimits limits = options.limits;
-    limits.max_bend_degrees += slack * 35;
-    limits.max_angle_degrees += slack * (172 - limits.max_angle_degrees);
+    limits.max_bend_degrees += slack * wide_bend;
+    limits.min_angle_degrees += slack * (wide_least_angle - limits.min_angle_degrees);
+    limits.max_angle_degrees += slack * (wide_angle - limits.max_angle_degrees);
     const QuadGuard guard(surface, clearance, limits);
     Taste taste;
     taste.wishes.limits = limits;
-    taste.wishes.beyond = round < rounds - 1 ? 60 : 0;
-    if (round == rounds - 1)
+    taste.wishes.beyond = is_last ? 0 : 60;
+    if (is_last) {
       split_unfit(cage, limits);
+    }
+    cage.renumber_faces();
     pair_triangles(cage, guard, field, taste);
-    retile(cage, guard, field, taste, progress.part(0.2, 0.4));
+    retile(cage, guard, field, taste, part.part(0, 0.5));
+    cage.renumber_faces();
     RelaxQuadsOptions settle;
     settle.keep = options.clearance + slack * options.room;
-    settle.steps = round == rounds - 1 ? 8 : 3;
-    relax_quads(cage, guard, objective, settle, progress.part(0.4, 0.6));
+    settle.steps = is_last ? 8 : 4;
+    relax_quads(cage, guard, objective, settle, part.part(0.5, 1));
   }
   split_unfit(cage, options.limits);
   if (progress.cancelled()) {

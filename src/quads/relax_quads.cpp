@@ -18,36 +18,51 @@ constexpr int cells = 3;
 
 using Positions = std::vector<Vec3>;
 
-/// What a part of a face should look like: f(x) = linear x + x^2 with
-/// x = (sum of weighted squared sides) / (scale * area) - 1.
-struct PartShape {
-  std::array<double, 3> side{}; ///< weight of the side opposite to corner k
-  double scale = 1;
-  double linear = 0;
-};
-
-constexpr PartShape equilateral{{1, 1, 1}, 4 * std::numbers::sqrt3, 0};
-// A quad's part has its corner in the middle: the sides there are equally long and square.
-constexpr PartShape square_corner{{1, 0, 1}, 4, 0.5};
-
-double shape_excess(const Corners& t, const PartShape& shape) {
-  double sides = 0;
-  for (int k = 0; k < 3; ++k) {
-    sides += shape.side[k] * (t[(k + 2) % 3] - t[(k + 1) % 3]).squaredNorm();
-  }
-  constexpr double most = 100;
-  const double scaled = shape.scale * triangle_area(t);
-  return scaled * (most + 1) > sides ? std::max(0.0, sides / scaled - 1) : most;
-}
-
 /// Six times the volume between a quad's two cuttings, signed.
 double six_volumes(const QuadCorners& q) {
   return (q[1] - q[0]).dot((q[2] - q[0]).cross(q[3] - q[0]));
 }
 
-double quad_area(const QuadCorners& q) {
-  return (q[2] - q[0]).cross(q[3] - q[1]).norm() / 2;
-}
+/// What is measured of a quad with diagonals d and e, in lengths of l^2 = (d^2 + e^2) / 2.
+struct QuadTerms {
+  explicit QuadTerms(const QuadCorners& q, double free_warp)
+      : diagonals{q[2] - q[0], q[3] - q[1]}, skew(q[0] - q[1] + q[2] - q[3]) {
+    const double d = diagonals[0].squaredNorm();
+    const double e = diagonals[1].squaredNorm();
+    squared = std::max((d + e) / 2, 1e-300);
+    unequal = (d - e) / squared;
+    warp = six_volumes(q) / std::pow(squared, 1.5);
+    excess = std::copysign(std::max(0.0, std::abs(warp) - free_warp), warp);
+    normal = diagonals[0].cross(diagonals[1]);
+    normal /= std::max(normal.norm(), 1e-300);
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 next = q[(k + 1) % 4] - q[k];
+      const Vec3 last = q[(k + 3) % 4] - q[k];
+      sides[k] = std::max(next.norm() * last.norm(), 1e-300);
+      flatness[k] = std::max(0.0, free_sine - normal.dot(next.cross(last)) / sides[k]);
+    }
+  }
+  static constexpr double free_sine = 0.5;
+
+  /// The sum of the squares of `flatness`.
+  [[nodiscard]] double flat_corners() const {
+    double sum = 0;
+    for (const double f : flatness) {
+      sum += f * f;
+    }
+    return sum;
+  }
+
+  Vec3 normal;                      ///< of the vector area
+  std::array<double, 4> sides{};    ///< the product of those at each corner
+  std::array<double, 4> flatness{}; ///< of each corner: its sine, below free_sine
+  std::array<Vec3, 2> diagonals;
+  Vec3 skew;
+  double squared = 0; ///< l^2
+  double unequal = 0; ///< (d^2 - e^2) / l^2: 0 for a rectangle
+  double warp = 0;    ///< six volumes / l^3: sin(bend) / 4 of a bent square
+  double excess = 0;  ///< the warp beyond what is free
+};
 
 class Relaxation {
 public:
@@ -71,8 +86,6 @@ public:
         faces_.push_back(f);
       }
     }
-    square_weight_ = options.square * objective.shape_weight();
-    flat_weight_ = options.flat * objective.shape_weight();
     keep_ = margin * std::max(options.keep * objective.diagonal(), guard.clearance());
   }
 
@@ -135,25 +148,23 @@ private:
       }
       sum += share * ((t[0] - center_).dot((t[1] - center_).cross(t[2] - center_)) / 6 +
                       triangle_area(t) * gap);
-      const PartShape& shape = parts.count == 4 ? square_corner : equilateral;
-      const double x = shape_excess(t, shape);
-      sum += shape_weight(face) * (shape.linear * x + x * x);
+      if (parts.count == 1) {
+        const double x = shape_defect(t);
+        sum += objective_.shape_weight() * x * x;
+      }
     }
     if (face.is_quad()) {
-      const QuadCorners q = corners_of(at, face);
-      const double area = quad_area(q);
-      sum += even_weight(face) * (q[0] - q[1] + q[2] - q[3]).squaredNorm() / area;
-      sum += flat_weight_ * std::pow(six_volumes(q), 2) / (area * area * area);
+      const QuadTerms terms(corners_of(at, face), options_.free_warp);
+      sum += weight_of(face) *
+             (options_.even * terms.skew.squaredNorm() / terms.squared +
+              options_.square * terms.unequal * terms.unequal +
+              options_.corner * terms.flat_corners() + options_.flat * terms.excess * terms.excess);
     }
     return sum;
   }
 
-  // Of each part: corners that point inward cannot be made square.
-  [[nodiscard]] double shape_weight(const CageFace& face) const {
-    return !face.is_quad() ? objective_.shape_weight() : face.tentative ? 0 : square_weight_ / 4;
-  }
-  [[nodiscard]] double even_weight(const CageFace& face) const {
-    return (face.tentative ? options_.tentative : options_.even) * objective_.shape_weight();
+  [[nodiscard]] double weight_of(const CageFace& face) const {
+    return (face.tentative ? options_.tentative : 1) * objective_.shape_weight();
   }
 
   [[nodiscard]] double total(const Positions& at) const {
@@ -202,8 +213,11 @@ private:
         }
       }
       add_side_constraints(at, faces_[i], reach, piece.constraints);
+      if (face.is_quad()) {
+        add_limits(at, face, reach, piece.constraints);
+      }
       if (towards_goal && face.is_quad()) {
-        add_planarity(corners_of(at, face), even_weight(face), piece);
+        add_shape(corners_of(at, face), weight_of(face), piece);
       }
     });
     BlockQuadratic quadratic(living_.size());
@@ -236,8 +250,12 @@ private:
       }
     }
     // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
-    const double slack = towards_goal ? 1e-6 : 0.05 * guard_.clearance() / unit;
-    const std::vector<Vec3> step = minimize(quadratic, constraints, slack);
+    const double soft = 0.05 * guard_.clearance() / unit;
+    std::vector<Vec3> step = minimize(quadratic, constraints, towards_goal ? 1e-6 : soft);
+    const auto is_zero = [](const Vec3& v) { return v == Vec3::Zero(); };
+    if (towards_goal && std::all_of(step.begin(), step.end(), is_zero)) {
+      step = minimize(quadratic, constraints, soft); // they contradict each other
+    }
     Positions result = at;
     for (Index v = 0; v < living_.size(); ++v) {
       Vec3 way = unit * step[v];
@@ -284,11 +302,9 @@ private:
         }
       }
     }
-    const PartShape& shape = of_quad ? square_corner : equilateral;
-    const double weight = shape_weight(face);
-    const double x = shape_excess(t, shape);
-    const double scaled = shape.scale * area;
-    const double slope_of_x = shape.linear + 2 * x;
+    const double weight = of_quad ? 0 : objective_.shape_weight();
+    const double x = shape_defect(t);
+    const double scaled = 4 * std::numbers::sqrt3 * area;
     std::array<Vec3, 3> slope;
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
@@ -296,44 +312,59 @@ private:
       const Vec3 area_slope = n.cross(t[last] - t[next]) / 2;
       piece.gradient[corner(k)] +=
           part * ((t[next] - center_).cross(t[last] - center_) / 6 + mean * area_slope);
-      slope[k] =
-          2 * (shape.side[last] * (t[k] - t[next]) + shape.side[next] * (t[k] - t[last])) / scaled -
-          (x + 1) / area * area_slope;
-      piece.gradient[corner(k)] += weight * slope_of_x * slope[k];
+      slope[k] = 2 * (2 * t[k] - t[next] - t[last]) / scaled - (x + good_shape) / area * area_slope;
+      piece.gradient[corner(k)] += 2 * weight * x * slope[k];
     }
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3 && weight * x > 0; ++k) {
       for (int m = 0; m < 3; ++m) {
-        const double springs =
-            k == m ? shape.side[(k + 1) % 3] + shape.side[(k + 2) % 3] : -shape.side[3 - k - m];
+        const double springs = (k == m ? 2.0 : -1.0) * 2 * x / scaled;
         piece.hessian[corner(k)][corner(m)] +=
-            weight * (slope_of_x * springs * 2 / scaled * Mat3::Identity() +
-                      2 * slope[k] * slope[m].transpose());
+            2 * weight * (springs * Mat3::Identity() + slope[k] * slope[m].transpose());
       }
     }
   }
 
-  void add_planarity(const QuadCorners& q, double even, Piece& piece) const {
-    const double area = quad_area(q);
-    if (!(area > 0)) {
-      return;
-    }
-    const double volume = six_volumes(q);
-    std::array<Vec3, 4> slope;
-    slope[1] = (q[2] - q[0]).cross(q[3] - q[0]);
-    slope[2] = (q[3] - q[0]).cross(q[1] - q[0]);
-    slope[3] = (q[1] - q[0]).cross(q[2] - q[0]);
-    slope[0] = -(slope[1] + slope[2] + slope[3]);
-    const Vec3 skew = q[0] - q[1] + q[2] - q[3];
+  // Least squares of what is measured of a quad, its size taken as fixed.
+  void add_shape(const QuadCorners& q, double weight, Piece& piece) const {
+    const QuadTerms terms(q, options_.free_warp);
+    const double even = 2 * weight * options_.even / terms.squared;
     for (int k = 0; k < 4; ++k) {
       const double sign = k % 2 == 0 ? 1 : -1;
-      piece.gradient[k] += 2 * even / area * sign * skew;
+      piece.gradient[k] += even * sign * terms.skew;
       for (int m = 0; m < 4; ++m) {
-        piece.hessian[k][m] += 2 * even / area * sign * (m % 2 == 0 ? 1 : -1) * Mat3::Identity();
+        piece.hessian[k][m] += even * sign * (m % 2 == 0 ? 1 : -1) * Mat3::Identity();
       }
     }
-    const double weight = 2 * flat_weight_ / (area * area * area);
+    const std::array<Vec3, 2> d = {2 / terms.squared * terms.diagonals[0],
+                                   2 / terms.squared * terms.diagonals[1]};
+    add_residual(2 * weight * options_.square, terms.unequal, {-d[0], d[1], d[0], -d[1]}, piece);
     for (int k = 0; k < 4; ++k) {
-      piece.gradient[k] += weight * volume * slope[k];
+      if (terms.flatness[k] > 0) {
+        const int next = (k + 1) % 4;
+        const int last = (k + 3) % 4;
+        std::array<Vec3, 4> slope;
+        slope[(k + 2) % 4] = Vec3::Zero();
+        slope[next] = -(q[last] - q[k]).cross(terms.normal) / terms.sides[k];
+        slope[last] = -terms.normal.cross(q[next] - q[k]) / terms.sides[k];
+        slope[k] = -(slope[next] + slope[last]);
+        add_residual(2 * weight * options_.corner, terms.flatness[k], slope, piece);
+      }
+    }
+    if (terms.excess != 0) {
+      const double scale = 1 / std::pow(terms.squared, 1.5);
+      std::array<Vec3, 4> slope;
+      slope[1] = scale * (q[2] - q[0]).cross(q[3] - q[0]);
+      slope[2] = scale * (q[3] - q[0]).cross(q[1] - q[0]);
+      slope[3] = scale * (q[1] - q[0]).cross(q[2] - q[0]);
+      slope[0] = -(slope[1] + slope[2] + slope[3]);
+      add_residual(2 * weight * options_.flat, terms.excess, slope, piece);
+    }
+  }
+
+  static void add_residual(double weight, double value, const std::array<Vec3, 4>& slope,
+                           Piece& piece) {
+    for (int k = 0; k < 4; ++k) {
+      piece.gradient[k] += weight * value * slope[k];
       for (int m = 0; m < 4; ++m) {
         piece.hessian[k][m] += weight * slope[k] * slope[m].transpose();
       }
@@ -362,6 +393,77 @@ private:
       const double distance = pair->distance;
       const Vec3 u = distance > 0.01 * keep_ ? Vec3((pair->on_a - pair->on_b) / distance) : n;
       constraints.push_back({vertices, barycentric(pair->on_a, t), u, keep_ - distance});
+    }
+  }
+
+  // Half spaces that keep a quad within the limits, or bring it nearer to them.
+  void add_limits(const Positions& at, const CageFace& face, double reach,
+                  std::vector<BlockConstraint>& constraints) const {
+    const QuadCorners q = corners_of(at, face);
+    const Vec3 area = (q[2] - q[0]).cross(q[3] - q[1]);
+    const double length = area.norm();
+    if (!(length > 0)) {
+      return;
+    }
+    const Vec3 n = area / length;
+    const QuadLimits& limits = guard_.limits();
+    constexpr double radians = std::numbers::pi / 180;
+    constexpr double within = 0.97; // what a step errs by, being linear
+    // Bend: six volumes v = sum of +- p_i h_i, h_i a corner's height along n and p_i twice the area
+    // of the other three, seen along n. Along a side d between triangles of twice the areas a and b
+    // the sine of the bend is v |d| / (a b).
+    std::array<double, 4> p{};
+    std::array<double, 4> doubled{};
+    double mean = 0;
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 cross = (q[(i + 2) % 4] - q[(i + 1) % 4]).cross(q[(i + 3) % 4] - q[(i + 1) % 4]);
+      p[i] = cross.dot(n);
+      doubled[i] = cross.norm();
+      mean += p[i] / 4;
+    }
+    if (mean > 0 && *std::min_element(p.begin(), p.end()) > 0.05 * mean) {
+      const double sine = std::sin(within * std::min(89.0, limits.max_bend_degrees) * radians);
+      const double most = sine * std::min(doubled[1] * doubled[3] / (q[2] - q[0]).norm(),
+                                          doubled[0] * doubled[2] / (q[3] - q[1]).norm());
+      const double v = six_volumes(q);
+      for (const double sign : {1.0, -1.0}) {
+        const double room = (most - sign * v) / mean;
+        if (room > 3 * reach) {
+          continue;
+        }
+        BlockConstraint c;
+        c.direction = sign * n;
+        for (int i = 0; i < 4; ++i) {
+          const double weight = (i % 2 == 0 ? 1 : -1) * p[i] / mean;
+          (i < 3 ? c.weight[i] : c.fourth_weight) = weight;
+          (i < 3 ? c.vertex[i] : c.fourth_vertex) = number_[face[i]];
+        }
+        c.bound = std::min(-room, reach);
+        constraints.push_back(c);
+      }
+    }
+    // Flat corners: the height of a corner over the line between its neighbours.
+    for (int i = 0; i < 4; ++i) {
+      const Vec3& before = q[(i + 3) % 4];
+      Vec3 line = q[(i + 1) % 4] - before;
+      line -= line.dot(n) * n;
+      const double base = line.norm();
+      if (!(base > 0)) {
+        continue;
+      }
+      line /= base;
+      const Vec3 up = line.cross(n); // out of the quad
+      const double height = up.dot(q[i] - before);
+      const double foot = std::clamp(line.dot(q[i] - before) / base, 0.1, 0.9);
+      const double least =
+          (180 - within * limits.max_angle_degrees) * radians * foot * (1 - foot) * base;
+      if (height - least > 2 * reach) {
+        continue;
+      }
+      constraints.push_back({{number_[face[i]], number_[face[i + 3]], number_[face[i + 1]]},
+                             {1, foot - 1, -foot},
+                             up,
+                             std::min(least - height, reach / 2)});
     }
   }
 
@@ -542,8 +644,6 @@ private:
   std::vector<Index> living_;
   std::vector<Index> faces_;
   Vec3 center_ = Vec3::Zero();
-  double square_weight_ = 0;
-  double flat_weight_ = 0;
   double keep_ = 0;
 };
 

@@ -15,16 +15,21 @@ struct RelaxQuadsOptions {
   /// The distance from the model that the steps aim at, in diagonals: at least the guard's
   /// clearance. More than that makes room.
   double keep = 0;
-  double square = 4;     ///< weight of square corners, in that of the shape of triangles
-  double flat = 20;      ///< weight of planarity, the same way
-  double even = 2;       ///< weight of opposite sides that are alike, the same way
-  double tentative = 10; ///< the same of tentative quads
+  // What quads should look like, in weights of the shape of triangles; l^2 is the mean of the
+  // squared diagonals.
+  double even = 2;        ///< |a - b + c - d|^2 / l^2 of the corners: 0 for a parallelogram
+  double square = 1;      ///< the squared difference of the squared diagonals, over l^4
+  double corner = 100;    ///< for each corner, the square of what its sine is below 1/2
+  double flat = 800;      ///< the square of what the warp (six volumes / l^3) is above `free_warp`
+  double free_warp = 0.1; ///< that of a square bent by 24 degrees
+  double tentative = 3;   ///< how many times as much all these count for tentative quads
 };
 
 /// Lowers the engine's objective, taken over both cuttings of every quad, along with terms for
 /// square corners, planarity and parallel sides, by sequential quadratic programs like relax(). The
-/// cage stays valid throughout, under every choice of diagonals. Vertices of a half cage's border
-/// move in the plane x = 0.
+/// guard's limits of bend and of flat corners are half spaces in them, like the clearance: quads
+/// beyond the limits are brought nearer to them. The cage stays valid throughout, under every
+/// choice of diagonals. Vertices of a half cage's border move in the plane x = 0.
 ///
 /// \returns the objective of the result
 double relax_quads(QuadCage& cage, const QuadGuard& guard, const Objective& objective,

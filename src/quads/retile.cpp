@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <vector>
@@ -63,19 +65,46 @@ std::vector<Tiling> tilings(Index first, Index last, int triangles) {
 
 constexpr int most_corners = 10;
 
-/// By the number of corners: those with the fewest triangles, 0 or 1; and up to six corners those
-/// with two more.
-std::array<std::vector<Tiling>, most_corners + 1> useful_tilings() {
-  std::array<std::vector<Tiling>, most_corners + 1> result;
-  for (int n = 4; n <= most_corners; ++n) {
-    const int most = n % 2 + (n <= 6 ? 2 : 0);
-    result[n] = tilings(0, static_cast<Index>(n - 1), most);
-    std::erase_if(result[n], [&](const Tiling& t) { return triangles_in(t) > most; });
-    std::stable_sort(result[n].begin(), result[n].end(), [](const Tiling& a, const Tiling& b) {
-      return triangles_in(a) < triangles_in(b);
-    });
+/// The tilings of a polygon, over a list of all the faces that occur in them.
+struct TilingTable {
+  std::vector<CageFace> faces;
+  struct Entry {
+    std::vector<std::uint16_t> faces; ///< indices
+    int triangles = 0;
+  };
+  std::vector<Entry> tilings; ///< those with the fewest triangles first
+
+  explicit TilingTable(int corners) {
+    // Those with the fewest triangles, 0 or 1; and up to six corners those with two more.
+    const int most = corners % 2 + (corners <= 6 ? 2 : 0);
+    std::map<std::vector<Index>, std::uint16_t> numbers;
+    for (const Tiling& tiling : cagewright::tilings(0, static_cast<Index>(corners - 1), most)) {
+      Entry entry;
+      entry.triangles = triangles_in(tiling);
+      for (const CageFace& face : tiling) {
+        const auto [it, is_new] = numbers.try_emplace({face.span().begin(), face.span().end()},
+                                                      static_cast<std::uint16_t>(faces.size()));
+        if (is_new) {
+          faces.push_back(face);
+        }
+        entry.faces.push_back(it->second);
+      }
+      if (entry.triangles <= most) {
+        tilings.push_back(std::move(entry));
+      }
+    }
+    std::stable_sort(tilings.begin(), tilings.end(),
+                     [](const Entry& a, const Entry& b) { return a.triangles < b.triangles; });
   }
-  return result;
+};
+
+/// By the number of corners.
+std::vector<TilingTable> useful_tilings() {
+  std::vector<TilingTable> tables;
+  for (int n = 4; n <= most_corners; ++n) {
+    tables.emplace_back(n);
+  }
+  return tables;
 }
 
 struct Exchange {
@@ -171,7 +200,7 @@ private:
   // Strips of a triangle, two or three quads, and a triangle.
   template <class Neighbors, class Add>
   void visit_strips(std::vector<Index>& strip, const Neighbors& neighbors, const Add& add) const {
-    constexpr std::size_t most_faces = 5;
+    constexpr std::size_t most_faces = 4;
     for (const Index next : neighbors(strip.back())) {
       if (std::find(strip.begin(), strip.end(), next) != strip.end()) {
         continue;
@@ -224,6 +253,13 @@ private:
     return valence < least ? unfit : taste_.valence * (valence - 4) * (valence - 4);
   }
 
+  // What is known of a face that a region may be tiled with.
+  struct Known {
+    CageFace face; // on the ring
+    double cost = -1;
+    enum class Fits { unknown, yes, no } fits = Fits::unknown;
+  };
+
   [[nodiscard]] std::optional<Exchange> best_exchange(const std::vector<Index>& region) const {
     const std::vector<Index> ring = border_of(region);
     if (ring.size() < 4 || ring.size() > most_corners) {
@@ -232,7 +268,7 @@ private:
     int triangles = 0;
     double now = 0;
     for (const Index f : region) {
-      now += cost_of(cage_, field_, taste_, cage_.face(f));
+      now += cost_of(cage_.positions(), field_, taste_, cage_.face(f));
       triangles += cage_.face(f).is_quad() ? 0 : 1;
     }
     std::vector<int> faces_at(ring.size(), 0);
@@ -242,47 +278,140 @@ private:
       }
       now += valence_cost(ring[i], 0);
     }
-    std::vector<Exchange> better;
-    for (const Tiling& tiling : tilings_[ring.size()]) {
-      if (triangles_in(tiling) > triangles) {
+    const TilingTable& table = tilings_[ring.size() - 4];
+    std::vector<Known> known(table.faces.size());
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      known[k].face = table.faces[k];
+      for (int i = 0; i < known[k].face.size; ++i) {
+        known[k].face.corners[i] = ring[table.faces[k].corners[i]];
+      }
+    }
+    constexpr double least_gain = 1e-3;
+    struct Better {
+      double gain = 0;
+      const TilingTable::Entry* tiling = nullptr;
+    };
+    std::vector<Better> better;
+    std::vector<int> change;
+    for (const TilingTable::Entry& tiling : table.tilings) {
+      if (tiling.triangles > triangles) {
         break;
       }
       double then = 0;
-      std::vector<int> change = faces_at;
-      Exchange exchange;
-      for (const CageFace& local : tiling) {
-        CageFace face = local;
-        for (int k = 0; k < face.size; ++k) {
-          ++change[local.corners[k]];
-          face.corners[k] = ring[local.corners[k]];
+      change = faces_at;
+      for (std::size_t i = 0; i < tiling.faces.size() && then < now; ++i) {
+        Known& face = known[tiling.faces[i]];
+        if (face.cost < 0) {
+          face.cost = cost_of(cage_.positions(), field_, taste_, face.face);
         }
-        then += cost_of(cage_, field_, taste_, face);
-        exchange.added.push_back(face);
+        then += face.cost;
+        for (const Index corner : table.faces[tiling.faces[i]].span()) {
+          ++change[corner];
+        }
       }
-      for (std::size_t i = 0; i < ring.size() && then < unfit; ++i) {
+      for (std::size_t i = 0; i < ring.size() && then < now; ++i) {
         then += valence_cost(ring[i], change[i]);
       }
-      constexpr double least_gain = 1e-3;
       if (now - then > least_gain) {
-        exchange.gain = now - then;
-        exchange.removed = region;
-        better.push_back(std::move(exchange));
+        better.push_back({now - then, &tiling});
       }
     }
     std::stable_sort(better.begin(), better.end(),
-                     [](const Exchange& a, const Exchange& b) { return a.gain > b.gain; });
-    for (Exchange& exchange : better) {
-      if (allows(exchange)) {
-        return std::move(exchange);
+                     [](const Better& a, const Better& b) { return a.gain > b.gain; });
+    if (better.empty()) {
+      return std::nullopt;
+    }
+    Place place(*this, region, ring);
+    for (const auto& [gain, tiling] : better) {
+      Exchange exchange;
+      exchange.gain = gain;
+      exchange.removed = region;
+      bool all_fit = true;
+      for (std::size_t i = 0; i < tiling->faces.size() && all_fit; ++i) {
+        Known& face = known[tiling->faces[i]];
+        if (face.fits == Known::Fits::unknown) {
+          const bool fits = place.fits(table.faces[tiling->faces[i]], face.face);
+          face.fits = fits ? Known::Fits::yes : Known::Fits::no;
+        }
+        all_fit = face.fits == Known::Fits::yes;
+        exchange.added.push_back(face.face);
+      }
+      if (all_fit && allows(exchange)) {
+        return exchange;
       }
     }
     return std::nullopt;
   }
 
+  // Whether faces may take the place of a region, each by itself. What is found out about a part of
+  // one serves for all that have it.
+  class Place {
+  public:
+    Place(const Retiling& all, const std::vector<Index>& region, const std::vector<Index>& ring)
+        : all_(all), region_(region), ring_(ring), free_(ring.size() * ring.size() * ring.size()) {
+      Box3 box;
+      for (const Index v : ring) {
+        box.extend(all.cage_.positions()[v]);
+      }
+      for (Index f = 0; f < all.boxes_.size(); ++f) {
+        if (all.boxes_[f].intersects(box) && all.cage_.has_face(f) &&
+            std::find(region.begin(), region.end(), f) == region.end()) {
+          near_.push_back(f);
+        }
+      }
+    }
+
+    // \param local its corners as places on the ring
+    bool fits(const CageFace& local, CageFace& face) {
+      if (!all_.keeps_shape(region_, face) ||
+          !QuadGuard::keeps_halves_apart(all_.cage_, {&face, 1}) ||
+          !std::all_of(near_.begin(), near_.end(),
+                       [&](Index f) { return fit_together(face, all_.cage_.face(f)); })) {
+        return false;
+      }
+      const FaceParts parts(local);
+      if (!face.is_quad()) {
+        return is_free(parts.triangles[0]);
+      }
+      const bool first = is_free(parts.triangles[0]) && is_free(parts.triangles[1]);
+      if (!first && !all_.may_be_tentative()) {
+        return false;
+      }
+      const bool second = is_free(parts.triangles[2]) && is_free(parts.triangles[3]);
+      const std::vector<Vec3>& x = all_.cage_.positions();
+      face.tentative =
+          !(first && second && shape_of(corners_of(x, face)).within(all_.guard_.limits()) &&
+            !all_.guard_.encloses_a_part(x, face));
+      if (face.tentative && !first) {
+        face = face.turned(1);
+      }
+      return !face.tentative || (all_.may_be_tentative() && (first || second));
+    }
+
+  private:
+    bool is_free(Triangle local) {
+      // The same triangle begun at its least corner.
+      std::rotate(local.begin(), std::min_element(local.begin(), local.end()), local.end());
+      char& known = free_[(local[0] * ring_.size() + local[1]) * ring_.size() + local[2]];
+      if (known == 0) {
+        const Triangle part{ring_[local[0]], ring_[local[1]], ring_[local[2]]};
+        known = all_.guard_.is_free(all_.cage_, near_, part) ? 1 : 2;
+      }
+      return known == 1;
+    }
+
+    const Retiling& all_;
+    const std::vector<Index>& region_;
+    const std::vector<Index>& ring_;
+    std::vector<Index> near_; // faces that those of the region may cross
+    std::vector<char> free_;  // of triangles on the ring: 1 yes, 2 no
+  };
+
+  [[nodiscard]] bool may_be_tentative() const { return taste_.wishes.beyond > 0; }
+
   // Quads that have to be tentative cost more: it must pay all the same.
   [[nodiscard]] bool allows(Exchange& exchange) const {
-    if (!keeps_shape(exchange) ||
-        !guard_.allows(cage_, boxes_, exchange.removed, exchange.added, taste_.wishes.beyond > 0)) {
+    if (!guard_.allows(cage_, boxes_, exchange.removed, exchange.added, taste_.wishes.beyond > 0)) {
       return false;
     }
     const auto tentative = std::count_if(exchange.added.begin(), exchange.added.end(),
@@ -291,23 +420,20 @@ private:
   }
 
   // No new triangle is a needle, no new face folds onto a neighbour.
-  [[nodiscard]] bool keeps_shape(const Exchange& exchange) const {
+  [[nodiscard]] bool keeps_shape(const std::vector<Index>& region, const CageFace& face) const {
     constexpr double worst_defect = 8;
     constexpr double sharpest = -0.8;
     const std::vector<Vec3>& x = cage_.positions();
-    for (const CageFace& face : exchange.added) {
-      if (!face.is_quad() && shape_defect({x[face[0]], x[face[1]], x[face[2]]}) > worst_defect) {
+    if (!face.is_quad() && shape_defect({x[face[0]], x[face[1]], x[face[2]]}) > worst_defect) {
+      return false;
+    }
+    const Vec3 n = area_vector(x, face).normalized();
+    for (int i = 0; i < face.size; ++i) {
+      const Index other = cage_.face_left_of(face[i + 1], face[i]);
+      const bool stays =
+          other != no_index && std::find(region.begin(), region.end(), other) == region.end();
+      if (stays && n.dot(area_vector(x, cage_.face(other)).normalized()) < sharpest) {
         return false;
-      }
-      const Vec3 n = area_vector(x, face).normalized();
-      for (int i = 0; i < face.size; ++i) {
-        const Index other = cage_.face_left_of(face[i + 1], face[i]);
-        const bool stays = other != no_index &&
-                           std::find(exchange.removed.begin(), exchange.removed.end(), other) ==
-                               exchange.removed.end();
-        if (stays && n.dot(area_vector(x, cage_.face(other)).normalized()) < sharpest) {
-          return false;
-        }
       }
     }
     return true;
@@ -343,7 +469,7 @@ private:
   const QuadGuard& guard_;
   const DirectionField& field_;
   const Taste& taste_;
-  std::array<std::vector<Tiling>, most_corners + 1> tilings_;
+  std::vector<TilingTable> tilings_;
   std::vector<Box3> boxes_;
 };
 
