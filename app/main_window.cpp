@@ -303,11 +303,12 @@ void MainWindow::offer_recovery() {
   for (const QString& path : recovery_.abandoned()) {
     const auto answer = QMessageBox::question(
         this, tr("Recover"),
-        tr("The program did not end as it should. Work of %1 was kept. Go on with it?")
-            .arg(QLocale().toString(QFileInfo(path).lastModified(), QLocale::ShortFormat)),
+        tr("The program did not end as it should. Work on %1, of %2, was kept. Go on with it?")
+            .arg(Recovery::subject_of(path),
+                 QLocale().toString(QFileInfo(path).lastModified(), QLocale::ShortFormat)),
         QMessageBox::Yes | QMessageBox::No | QMessageBox::Discard, QMessageBox::Yes);
     if (answer == QMessageBox::Yes) {
-      session_.recover(path.toStdString());
+      recovery_.recover(path);
       return;
     }
     if (answer == QMessageBox::Discard) {

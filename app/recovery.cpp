@@ -66,6 +66,26 @@ std::vector<QString> Recovery::abandoned() const {
   return found;
 }
 
+QString Recovery::subject_of(const QString& path) {
+  const Result<Project> project = read_project(path.toStdString());
+  return project && !project->model_path.empty()
+             ? QString::fromStdString(project->model_path.filename().string())
+             : tr("a project");
+}
+
+void Recovery::recover(const QString& path) {
+  connect(
+      &session_.jobs(), &JobRunner::finished, this,
+      [this, path] {
+        save();
+        if (QFile::exists(path_)) { // else it could not be opened: it may be tried again
+          discard(path);
+        }
+      },
+      Qt::SingleShotConnection);
+  session_.recover(path.toStdString());
+}
+
 void Recovery::discard(const QString& path) {
   QFile::remove(path);
   QFile::remove(lock_of(path));

@@ -31,6 +31,10 @@ public:
 
   /// Files that programs left which are no longer running, the newest first.
   [[nodiscard]] std::vector<QString> abandoned() const;
+  /// The name of the model that the work is on.
+  static QString subject_of(const QString& path);
+  /// Goes on with it; the file goes as soon as the work is kept as this program's own.
+  void recover(const QString& path);
   static void discard(const QString& path);
 
 private:

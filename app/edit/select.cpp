@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <optional>
 
 namespace cagewright::app {
 namespace {
@@ -80,6 +81,33 @@ std::vector<Index> used_vertices(const CageGraph& graph) {
     }
   }
   return used;
+}
+
+/// A run of edges through `first`: backward from its first side, then forward from its second; or
+/// once round, if it comes back to it.
+/// \param walker  for a side (0, 1) what gives one edge after the other, and then none
+template <class Walker>
+std::vector<Index> both_ways(Index first, std::size_t sides, std::size_t most,
+                             const Walker& walker) {
+  std::vector<Index> run;
+  for (std::size_t side = 0; side < sides; ++side) {
+    auto next = walker(side);
+    std::vector<Index> half;
+    // A run may go round without ever coming back to where it began.
+    for (std::optional<Index> e = next(); e && half.size() <= most; e = next()) {
+      half.push_back(*e);
+      if (*e == first) {
+        return half;
+      }
+    }
+    if (side == 0) {
+      run.assign(half.rbegin(), half.rend());
+      run.push_back(first);
+    } else {
+      run.insert(run.end(), half.begin(), half.end());
+    }
+  }
+  return run;
 }
 
 Selection follow(const Selection& selection, const CageGraph& graph,
@@ -217,62 +245,32 @@ Selection linked(const Selection& selection, const CageGraph& graph) {
 }
 
 std::vector<Index> edge_loop(Index edge, const CageGraph& graph) {
-  // Backward from the first end, then forward from the second.
-  std::vector<Index> loop;
-  for (int end = 0; end < 2; ++end) {
-    std::vector<Index> half;
-    Index e = edge;
-    Index v = graph.edge(edge)[end];
-    while (const std::optional<Index> next = graph.straight_on(e, v)) {
-      if (*next == edge) { // once round
-        half.push_back(edge);
-        return half;
+  return both_ways(edge, 2, graph.edge_count(), [&](std::size_t end) {
+    return [&graph, e = edge, v = graph.edge(edge)[end]]() mutable {
+      const std::optional<Index> next = graph.straight_on(e, v);
+      if (next) {
+        v = graph.other_end(*next, v);
+        e = *next;
       }
-      if (half.size() > graph.edge_count()) { // a loop that never comes back to where it began
-        break;
-      }
-      half.push_back(*next);
-      v = graph.other_end(*next, v);
-      e = *next;
-    }
-    if (end == 0) {
-      loop.assign(half.rbegin(), half.rend());
-      loop.push_back(edge);
-    } else {
-      loop.insert(loop.end(), half.begin(), half.end());
-    }
-  }
-  return loop;
+      return next;
+    };
+  });
 }
 
 std::vector<Index> edge_ring(Index edge, const CageGraph& graph) {
-  std::vector<Index> ring;
   const std::span<const Index> faces = graph.edge_faces(edge);
-  for (std::size_t side = 0; side < std::min<std::size_t>(2, faces.size()); ++side) {
-    std::vector<Index> half;
-    Index e = edge;
-    Index face = faces[side];
-    while (const std::optional<Index> next = graph.across(e, face)) {
-      if (*next == edge) {
-        half.push_back(edge);
-        return half;
+  const std::size_t sides = std::min<std::size_t>(2, faces.size());
+  return both_ways(edge, sides, graph.edge_count(), [&](std::size_t side) {
+    return [&graph, e = edge, face = std::optional(faces[side])]() mutable {
+      const std::optional<Index> next = face ? graph.across(e, *face) : std::nullopt;
+      if (next) {
+        const std::span<const Index> both = graph.edge_faces(*next);
+        face = both.size() != 2 ? std::nullopt : std::optional(both[both[0] == *face ? 1 : 0]);
+        e = *next;
       }
-      half.push_back(*next);
-      const std::span<const Index> both = graph.edge_faces(*next);
-      if (both.size() != 2 || half.size() > graph.edge_count()) {
-        break;
-      }
-      face = both[0] == face ? both[1] : both[0];
-      e = *next;
-    }
-    if (side == 0) {
-      ring.assign(half.rbegin(), half.rend());
-      ring.push_back(edge);
-    } else {
-      ring.insert(ring.end(), half.begin(), half.end());
-    }
-  }
-  return ring;
+      return next;
+    };
+  });
 }
 
 std::vector<Index> face_ring(Index edge, const CageGraph& graph) {
@@ -304,42 +302,7 @@ Selection rings(const Selection& selection, const CageGraph& graph) {
 
 Selection mirrored(const Selection& selection, std::span<const Index> partner,
                    const CageGraph& graph, bool keep) {
-  const auto image = [&](Index v) { return v < partner.size() ? partner[v] : ~Index{0}; };
-  const auto exists = [&](Index v) { return v < graph.vertex_count(); };
-  Selection result;
-  result.mode = selection.mode;
-  for (const Index v : selection.vertices) {
-    if (exists(image(v))) {
-      result.vertices.push_back(image(v));
-    }
-  }
-  for (const EdgeVertices& e : selection.edges) {
-    const auto found = graph.find_edge(image(e[0]), image(e[1]));
-    if (found) {
-      result.edges.push_back(graph.edge(*found));
-    }
-  }
-  for (const Index f : selection.faces) {
-    std::vector<Index> corners;
-    for (const Index v : graph.face_vertices(f)) {
-      corners.push_back(image(v));
-    }
-    if (!std::all_of(corners.begin(), corners.end(), exists)) {
-      continue;
-    }
-    std::sort(corners.begin(), corners.end());
-    for (const Index g : graph.vertex_faces(corners[0])) {
-      const std::span<const Index> face = graph.face_vertices(g);
-      std::vector<Index> sorted(face.begin(), face.end());
-      std::sort(sorted.begin(), sorted.end());
-      if (sorted == corners) {
-        result.faces.push_back(g);
-      }
-    }
-  }
-  make_unique(result.vertices);
-  make_unique(result.edges);
-  make_unique(result.faces);
+  const Selection result = carried_over(selection, graph, partner, graph);
   return keep ? combined(selection, result, Combine::add) : result;
 }
 

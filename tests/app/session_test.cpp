@@ -475,10 +475,14 @@ TEST_F(SessionTest, RecoversWorkOfAProgramThatCrashed) {
   }
   EXPECT_EQ(kept.entryList({"*.cagewright"}), QStringList("crashed.cagewright"));
   session_.editor().reset_pose();
-  session_.recover(kept.filePath("crashed.cagewright").toStdString());
+  EXPECT_EQ(Recovery::subject_of(kept.filePath("crashed.cagewright")), "model.obj");
+  Recovery recovery(session_, kept);
+  recovery.recover(kept.filePath("crashed.cagewright"));
   wait();
   EXPECT_EQ(cage(), pose);
   EXPECT_TRUE(session_.modified());
+  EXPECT_TRUE(recovery.abandoned().empty()) << "it would be offered again and again";
+  EXPECT_EQ(kept.entryList({"*.cagewright"}).size(), 1) << "the work is kept as this program's";
 }
 
 TEST_F(SessionTest, TakesEverythingBackAndDoesItAgain) {
