@@ -18,6 +18,7 @@ namespace {
 constexpr int first_try = 100;
 constexpr int fewest = 4;
 constexpr int most = 20000;
+constexpr int direct_runs = 2;
 constexpr int runs = 8;
 constexpr double close_enough = 1.06; // of two numbers of vertices: neither is worth another run
 constexpr double bound_width = 0.002; // of the gap: how well it is bounded
@@ -45,9 +46,17 @@ public:
   }
 
   Result<ImprovedToGap> run(const Progress& progress) {
+    constexpr double direct = 0.5; // of the progress
+    if (const Status made = try_directly(progress.part(0, direct)); !made) {
+      return made.error();
+    }
+    if (fine_) {
+      return std::move(*fine_);
+    }
     int vertices = std::min(first_try, limit_);
     for (int k = 0; k < runs && vertices > 0; ++k) {
-      const Progress part = progress.part(static_cast<double>(k) / runs, (k + 1.0) / runs);
+      const Progress part =
+          progress.part(direct + (1 - direct) * k / runs, direct + (1 - direct) * (k + 1.0) / runs);
       if (const Status made = make(vertices, part); !made) {
         return made.error();
       }
@@ -73,6 +82,40 @@ private:
     std::array<char, 96> text{};
     std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g", p.x(), p.y(), p.z());
     return text.data();
+  }
+
+  // The improvement heeds the gap at samples in each of its steps. If they have seen too little it
+  // is done again for a smaller gap.
+  Status try_directly(const Progress& progress) {
+    ImproveOptions options = options_;
+    options.vertices = limit_;
+    options.faces = 0;
+    double over = 1.02;
+    for (int k = 0; k < direct_runs; ++k) {
+      options.max_gap = std::max(max_gap_ / over, (max_gap_ + options_.clearance) / 2);
+      Result<Improved> improved =
+          improve(start_, model_, options,
+                  progress.part(static_cast<double>(k) / direct_runs, (k + 1.0) / direct_runs));
+      if (!improved) {
+        return improved.error();
+      }
+      const GreatestGap gap =
+          greatest_gap(improved->cage, bvh_, bound_width * max_gap_ * diagonal_);
+      const double upper = gap.upper / diagonal_;
+      const auto count = static_cast<int>(improved->cage.positions.size());
+      if (upper <= max_gap_ && count <= limit_) {
+        improved->report.reached = true;
+        improved->report.why_not.clear();
+        fine_ = ImprovedToGap{std::move(*improved), upper};
+        break;
+      }
+      over *= 1.01 * upper / max_gap_;
+      constexpr double beyond_samples = 1.2; // they do not see so little
+      if (upper > beyond_samples * max_gap_) {
+        break;
+      }
+    }
+    return success();
   }
 
   Status make(int vertices, const Progress& progress) {

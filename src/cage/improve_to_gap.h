@@ -17,14 +17,14 @@ struct ImprovedToGap {
 /// Whether a gap is above the clearance, so that a cage may keep both. Errors: invalid_option.
 Status can_keep_gap(double max_gap, double clearance);
 
-/// Looks for the number of vertices with which improve() gives a cage all of whose points are
-/// within `max_gap` of the model, and is coarsest.
+/// Looks for the coarsest cage all of whose points are within `max_gap` of the model.
 ///
 /// The distance is from every point of the cage's surface to the nearest point of the model: its
-/// greatest value is bounded by greatest_gap(), not sampled. Numbers are guessed from the gaps of
-/// the cages made so far; a cage that is fine enough is the start of the coarser ones, so that only
-/// the few steps towards finer cages cost a full run. Eight runs at most; fewer when the next
-/// coarser cage that was tried and failed has nearly as many vertices (a sixteenth fewer).
+/// greatest value is bounded by greatest_gap(), not sampled. First improve() is asked for such a
+/// cage directly: ImproveOptions::max_gap. Where that does not do, numbers of vertices are guessed
+/// from the gaps of the cages made so far; a cage that is fine enough is the start of the coarser
+/// ones. Eight runs more at most; fewer when the next coarser cage that was tried and failed has
+/// nearly as many vertices (a sixteenth fewer).
 ///
 /// \param options  its vertices and faces are limits; 0: none. If they do not allow the gap, the
 ///                 nearest cage within them is returned, and the report says so.

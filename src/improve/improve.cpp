@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace cagewright {
@@ -39,6 +40,10 @@ ObjectiveWeights weights_for(TriangleView start, TriangleView model, const Impro
                              std::size_t budget) {
   ObjectiveWeights weights;
   weights.square = options.square;
+  if (options.max_gap > 0) { // at the gap the square counts twice as much as the rest
+    constexpr double at_gap = 2;
+    weights.square = std::max(weights.square, at_gap / options.max_gap);
+  }
   weights.shape = options.shape;
   weights.typical_area = surface_area(start) / (2.0 * static_cast<double>(budget));
   weights.typical_area *= options.extent == CageExtent::half ? 2 : 1;
@@ -57,14 +62,22 @@ public:
 
   Result<Improved> run(const Progress& progress) {
     const Clock::time_point begin = Clock::now();
-    simplify_to_budget(progress.part(0, 0.4));
+    if (options_.max_gap > 0) {
+      coarsen_within_gap(progress.part(0, 0.9));
+    }
+    if (options_.max_gap == 0 || over_budget()) {
+      objective_.limit_gap(std::numeric_limits<double>::infinity());
+      simplify_to_budget(progress.part(0, 0.4));
+    }
     if (progress.cancelled()) {
       return Error::cancelled();
     }
     Improved result;
     result.report.simplify_seconds = seconds_since(begin);
     const Clock::time_point middle = Clock::now();
-    const double value = refine(progress.part(0.4, 1));
+    const bool within_gap = std::isfinite(objective_.weights().most_gap);
+    const double value =
+        within_gap ? relax_steps(4, progress.part(0.9, 1)) : refine(progress.part(0.4, 1));
     if (progress.cancelled()) {
       return Error::cancelled();
     }
@@ -136,6 +149,53 @@ private:
     return std::min(best, relax_steps(4, Progress()));
   }
 
+  // As few vertices as the gap allows. A cage that is a little too coarse is refined where it is
+  // too far away, and then edges are collapsed until none is left that can go without that.
+  void coarsen_within_gap(const Progress& progress) {
+    constexpr std::size_t fewest = 4;
+    const double limit = options_.max_gap * surface_.diagonal;
+    // So many vertices are usually too few: gaps fall about with the power 0.8 of their number.
+    const double guess = 1.6 * std::pow(options_.max_gap, -1.25);
+    const auto coarse =
+        std::clamp(static_cast<std::size_t>(guess), fewest, std::max(fewest, budget_));
+    reduce(Placement::outside_patch, static_cast<std::size_t>(options_.careful_from) * coarse,
+           progress.part(0, 0.05));
+    reduce(Placement::clear_of_model, coarse, progress.part(0.05, 0.2));
+    settle(4, progress.part(0.2, 0.3));
+    constexpr int most_splits = 12;
+    std::size_t least_far = std::numeric_limits<std::size_t>::max();
+    int in_vain = 0;
+    for (int i = 0; i < most_splits && !progress.cancelled(); ++i) {
+      const std::size_t before = cage_.mesh.vertex_count();
+      const std::size_t far = split_far_faces(cage_, guard_, objective_, limit, most_valence_);
+      if (far > 0 && cage_.mesh.vertex_count() < before + 2) { // make room round them
+        split_edges(cage_, guard_, objective_, 4 + before / 16, most_valence_);
+      }
+      constexpr int patience = 4;
+      in_vain = far < least_far ? 0 : in_vain + 1;
+      least_far = std::min(least_far, far);
+      if (far == 0 || in_vain == patience || cage_.mesh.vertex_count() > 16 + 3 * coarse / 2) {
+        break;
+      }
+      flip_edges(cage_, guard_, objective_, most_valence_);
+      relax_steps(3, progress.part(0.3 + 0.3 * i / most_splits, 0.3 + 0.3 * (i + 1) / most_splits));
+    }
+    objective_.limit_gap(limit);
+    WorkingCage kept = cage_;
+    constexpr int most_rounds = 4;
+    for (int round = 0; round < most_rounds && !progress.cancelled(); ++round) {
+      const Progress part =
+          progress.part(0.6 + 0.4 * round / most_rounds, 0.6 + 0.4 * (round + 1) / most_rounds);
+      reduce(Placement::clear_of_model, fewest, part.part(0, 0.5));
+      settle(4, part.part(0.5, 1));
+      if (cage_.mesh.vertex_count() >= kept.mesh.vertex_count()) {
+        break;
+      }
+      kept = cage_;
+    }
+    cage_ = std::move(kept);
+  }
+
   [[nodiscard]] bool over_budget() const { return cage_.mesh.vertex_count() > budget_; }
 
   void reduce(Placement placement, std::size_t vertices, const Progress& progress) {
@@ -182,7 +242,8 @@ Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOp
     return Error{ErrorCode::invalid_option, "the clearance must be above 0 and below 1"};
   }
   if (options.vertices < 0 || options.faces < 0 || options.rounds < 0 || options.most_valence < 5 ||
-      !(options.square >= 0) || !(options.shape >= 0) || !(options.careful_from >= 1)) {
+      !(options.square >= 0) || !(options.max_gap >= 0) || !(options.shape >= 0) ||
+      !(options.careful_from >= 1)) {
     return Error{ErrorCode::invalid_option, "an option of the improvement is out of its range"};
   }
   if (!options.density.empty() && options.density.size() != model.positions.size()) {

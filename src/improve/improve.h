@@ -34,6 +34,10 @@ struct ImproveOptions {
   /// Whether the start is a whole cage or half of one. If so the result is half of one too; the
   /// budget and the report are those of the whole.
   CageExtent extent = CageExtent::whole;
+  /// Make the coarsest cage no face of which is farther from the model than this, in diagonals, at
+  /// any of fifteen points of it; the budget is then a limit, which goes before. Where no split
+  /// brings the cage nearer, over a hollow, it may stay farther away. 0: as fine as the budget allows.
+  double max_gap = 0;
   /// What lengths are fractions of. 0: the diagonal of the model's box.
   double diagonal = 0;
 };

@@ -90,6 +90,45 @@ double Objective::face(const Corners& t) const {
   return triangle_area(t) * sum + shape_weight() * x * x;
 }
 
+double Objective::sampled_gap(const Corners& t) const {
+  double greatest = 0;
+  constexpr int cells = 4;
+  for (int i = 0; i <= cells; ++i) {
+    for (int j = 0; i + j <= cells; ++j) {
+      const Vec3 p = (i * t[0] + j * t[1] + (cells - i - j) * t[2]) / cells;
+      greatest = std::max(greatest, nearest(p).distance);
+    }
+  }
+  return greatest;
+}
+
+bool Objective::widens_gap(const CageMesh& cage, const Patch& patch) const {
+  if (!std::isfinite(weights_.most_gap)) {
+    return false;
+  }
+  double gap = 0;
+  for (const Triangle& t : patch.added) {
+    gap = std::max(gap, sampled_gap(corners_after(cage, patch, t)));
+  }
+  if (gap <= weights_.most_gap) {
+    return false;
+  }
+  double before = 0;
+  for (const Index f : patch.removed) {
+    before = std::max(before, sampled_gap(corners_of(cage, f)));
+  }
+  constexpr double progress = 0.8;
+  return gap > progress * before;
+}
+
+bool Objective::widens_gap(const Corners& before, const Corners& after) const {
+  if (!std::isfinite(weights_.most_gap)) {
+    return false;
+  }
+  const double gap = sampled_gap(after);
+  return gap > weights_.most_gap && gap > sampled_gap(before);
+}
+
 Vec3 volume_origin(const CageMesh& cage, const Vec3& near) {
   return cage.is_half() ? Vec3(0, near.y(), near.z()) : near;
 }

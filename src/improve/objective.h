@@ -24,6 +24,9 @@ struct ObjectiveWeights {
   double typical_area = 0;           ///< `area` above, in the model's units: that of a typical face
   std::vector<double> emphasis = {}; ///< of each triangle of the model, >= 1; none: 1 everywhere
   double typical_emphasis = 1;       ///< that of a typical place
+  /// No step may leave a face of the cage farther than this from the model at any of a few samples,
+  /// unless it brings it much nearer than it was: in the model's units.
+  double most_gap = std::numeric_limits<double>::infinity();
 };
 
 /// The emphasis that makes the cage finer where the density is greater: (density / least)^2. For
@@ -73,6 +76,17 @@ public:
 
   /// A face's own part: the integral of the gap, by six nearest points, and the shape.
   [[nodiscard]] double face(const Corners& t) const;
+
+  /// The greatest distance to the model at fifteen points of the triangle, its corners among them.
+  [[nodiscard]] double sampled_gap(const Corners& t) const;
+
+  /// Whether the patch breaks weights().most_gap.
+  [[nodiscard]] bool widens_gap(const CageMesh& cage, const Patch& patch) const;
+
+  /// The same for a face that moves.
+  [[nodiscard]] bool widens_gap(const Corners& before, const Corners& after) const;
+
+  void limit_gap(double most_gap) { weights_.most_gap = most_gap; }
 
   /// The change of the whole objective by a patch, given the parts of the present faces.
   [[nodiscard]] double change(const CageMesh& cage, std::span<const double> face_values,

@@ -4,6 +4,7 @@
 #include "improve/placement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,6 +18,7 @@ using Edge = std::array<Index, 2>;
 struct Change {
   double gain = 0; // by how much the objective falls
   Patch patch;
+  Edge edge = {}; ///< that it is about, where that is needed
 };
 
 std::vector<Edge> edges_of(const CageMesh& cage) {
@@ -116,11 +118,35 @@ std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change
   return made;
 }
 
+// The split of an edge with its vertex where it lowers the objective.
+std::optional<Change> placed_split(const CageMesh& mesh, const Guard& guard,
+                                   const Objective& objective, std::span<const double> values,
+                                   const Edge& edge, std::size_t most_valence) {
+  Patch patch = mesh.split(edge[0], edge[1]);
+  if (!leaves_valence(mesh, patch.removed, edge[0], edge[1], most_valence)) {
+    return std::nullopt;
+  }
+  const std::optional<Vec3> position = place_clear_of_model(guard, objective, mesh, patch);
+  if (!position) {
+    return std::nullopt;
+  }
+  patch.position = *position;
+  if (!keeps_shape(mesh, patch) || objective.widens_gap(mesh, patch)) {
+    return std::nullopt;
+  }
+  // Of a half, for each vertex of the whole that it costs.
+  const double share = mesh.is_half() && patch.on_plane ? 2 : 1;
+  const double gain = -share * objective.change(mesh, values, patch);
+  return Change{gain, std::move(patch), edge};
+}
+
 } // namespace
 
 std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
                        std::size_t most_valence) {
   std::size_t total = 0;
+  // Within a plane both diagonals are as good but for rounding: no going to and fro.
+  const double least_gain = 1e-9 * std::pow(objective.diagonal(), 3);
   for (;;) {
     const CageMesh& mesh = cage.mesh;
     const std::vector<double> values = objective.face_values(mesh);
@@ -138,8 +164,9 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
         return change;
       }
       const double gain = -objective.change(mesh, values, *patch);
-      if (gain > 0 && !guard.too_near(mesh, *patch)) {
-        change = Change{gain, std::move(*patch)};
+      if (gain > least_gain && !guard.too_near(mesh, *patch) &&
+          !objective.widens_gap(mesh, *patch)) {
+        change = Change{gain, std::move(*patch), edge};
       }
       return change;
     });
@@ -157,34 +184,55 @@ std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& 
   const std::vector<double> values = objective.face_values(mesh);
   // Splits that promise little are not looked into.
   const std::size_t worth_a_look = 3 * count + 12;
-  std::vector<Change> promised = ranked(edges_of(mesh), [&](const Edge& edge) {
+  const std::vector<Change> promised = ranked(edges_of(mesh), [&](const Edge& edge) {
     const auto& [a, b] = edge;
     std::optional<Change> change;
     Patch patch = mesh.split(a, b);
     if (leaves_valence(mesh, patch.removed, a, b, most_valence)) {
       const double share = mesh.is_half() && patch.on_plane ? 2 : 1;
       const double gain = share * promised_gain(guard, objective, mesh, patch);
-      change = Change{gain, std::move(patch)};
+      change = Change{gain, std::move(patch), edge};
     }
     return change;
   });
-  promised.resize(std::min(promised.size(), worth_a_look));
-  const std::vector<Change> changes = ranked(promised, [&](const Change& candidate) {
-    std::optional<Change> change;
-    Patch patch = candidate.patch;
-    const std::optional<Vec3> position = place_clear_of_model(guard, objective, mesh, patch);
-    if (!position) {
-      return change;
-    }
-    patch.position = *position;
-    if (keeps_shape(mesh, patch)) {
-      // Of a half, for each vertex of the whole that it costs.
-      const double share = mesh.is_half() && patch.on_plane ? 2 : 1;
-      change = Change{-share * objective.change(mesh, values, patch), std::move(patch)};
-    }
-    return change;
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < std::min(promised.size(), worth_a_look); ++i) {
+    edges.push_back(promised[i].edge);
+  }
+  const std::vector<Change> changes = ranked(edges, [&](const Edge& edge) {
+    return placed_split(mesh, guard, objective, values, edge, most_valence);
   });
   return make(cage, guard, changes, count);
+}
+
+std::size_t split_far_faces(WorkingCage& cage, const Guard& guard, const Objective& objective,
+                            double limit, std::size_t most_valence) {
+  const CageMesh& mesh = cage.mesh;
+  std::vector<double> gaps(mesh.face_end(), 0);
+  parallel_for(0, gaps.size(), 4, [&](std::size_t i) {
+    const auto f = static_cast<Index>(i);
+    gaps[f] = mesh.has_face(f) ? objective.sampled_gap(corners_of(mesh, f)) : 0;
+  });
+  std::vector<Edge> edges;
+  std::size_t far = 0;
+  for (Index f = 0; f < mesh.face_end(); ++f) {
+    if (gaps[f] <= limit) {
+      continue;
+    }
+    ++far;
+    const Triangle& t = mesh.face(f);
+    for (int i = 0; i < 3; ++i) {
+      edges.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const std::vector<double> values = objective.face_values(mesh);
+  const std::vector<Change> changes = ranked(edges, [&](const Edge& edge) {
+    return placed_split(cage.mesh, guard, objective, values, edge, most_valence);
+  });
+  make(cage, guard, changes, edges.size());
+  return far;
 }
 
 } // namespace cagewright

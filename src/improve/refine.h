@@ -16,4 +16,10 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
 std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
                         std::size_t count, std::size_t most_valence);
 
+/// Splits edges of faces that are farther from the model than `limit` at any of the samples of
+/// Objective::sampled_gap(), where it lowers the objective most, but none of neighbours. The cage stays valid
+/// throughout. \returns how many such faces there were
+std::size_t split_far_faces(WorkingCage& cage, const Guard& guard, const Objective& objective,
+                            double limit, std::size_t most_valence);
+
 } // namespace cagewright

@@ -278,9 +278,10 @@ private:
       Patch patch; // the face by itself, taken out and put back
       patch.removed = {faces_[i]};
       patch.added = {t};
-      bad[i] = static_cast<std::uint8_t>(misshapen(moved, faces_[i]) ||
-                                         guard_.too_near(moved, patch).has_value() ||
-                                         guard_.crosses(moved, boxes, patch));
+      bad[i] = static_cast<std::uint8_t>(
+          misshapen(moved, faces_[i]) ||
+          objective_.widens_gap(corners_of(cage_.mesh, faces_[i]), corners_of(moved, faces_[i])) ||
+          guard_.too_near(moved, patch).has_value() || guard_.crosses(moved, boxes, patch));
     });
     std::vector<Index> result;
     for (std::size_t i = 0; i < faces_.size(); ++i) {

@@ -173,7 +173,7 @@ private:
     }
     patch->position = *position;
     if (!keeps_shape(cage_.mesh, *patch, options_.limits) ||
-        guard_.loses_a_part(cage_.mesh, *patch)) {
+        guard_.loses_a_part(cage_.mesh, *patch) || objective_.widens_gap(cage_.mesh, *patch)) {
       return std::nullopt;
     }
     const double cost = options_.placement == Placement::outside_patch

@@ -1,16 +1,20 @@
 #include "cage/budget_cage.h"
 
+#include "core/random.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "mesh/topology.h"
 #include "spatial/bvh.h"
+#include "validate/cage_metrics.h"
 #include "validate/greatest_gap.h"
 #include "validate/validate_cage.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace cagewright {
 namespace {
@@ -90,17 +94,18 @@ TEST(BudgetCage, ThatCannotBeKeptGivesAValidCageAndSaysWhy) {
 }
 
 TEST(BudgetCage, IsTheSameOnAnyNumberOfThreads) {
-  const TriangleMesh model =
-      joined(make_torus(0.25, 48, 24), moved(make_icosphere(2), 0.4, {3, 0, 0}));
-  BudgetCageOptions apart = of_vertices(50);
+  const TriangleMesh torus = make_torus(0.25, 24, 12);
+  const TriangleMesh pieces = joined(torus, moved(make_icosphere(1), 0.4, {3, 0, 0}));
+  BudgetCageOptions apart = of_vertices(24);
   apart.boxes.boxes.pieces = Pieces::apart;
   BudgetCageOptions near = of_vertices(0);
-  near.max_gap = 0.05;
-  for (const BudgetCageOptions& options : {of_vertices(40), apart, near}) {
-    const auto cage_with = [&](int threads) {
+  near.max_gap = 0.12;
+  for (const auto& [model, options] :
+       {std::pair(pieces, of_vertices(20)), std::pair(pieces, apart), std::pair(torus, near)}) {
+    const auto cage_with = [&, &of = model, &how = options](int threads) {
       tbb::task_arena arena(threads);
       return arena.execute([&] {
-        Result<BudgetCage> made = make_budget_cage(model, options);
+        Result<BudgetCage> made = make_budget_cage(of, how);
         EXPECT_TRUE(made);
         return made ? std::move(made->cage) : TriangleMesh{};
       });
@@ -114,8 +119,9 @@ TEST(BudgetCage, IsTheSameOnAnyNumberOfThreads) {
 
 TEST(BudgetCage, StopsWhereverItIsAskedTo) {
   const TriangleMesh model =
-      joined(make_torus(0.25, 32, 16), moved(make_icosphere(2), 0.4, {3, 0, 0}));
-  for (const double gap : {0.0, 0.03}) {
+      joined(make_torus(0.25, 16, 8), moved(make_icosphere(1), 0.4, {3, 0, 0}));
+  const TriangleMesh one_piece = make_torus(0.25, 16, 8);
+  for (const double gap : {0.0, 0.12}) {
     for (const double when : {0.0, 0.05, 0.2, 0.5, 0.9}) {
       std::stop_source stop;
       const Progress progress(stop.get_token(), [&](double fraction, std::string_view) {
@@ -123,16 +129,47 @@ TEST(BudgetCage, StopsWhereverItIsAskedTo) {
           stop.request_stop();
         }
       });
-      BudgetCageOptions options = of_vertices(gap > 0 ? 0 : 40);
+      const TriangleMesh& of = gap > 0 ? one_piece : model;
+      BudgetCageOptions options = of_vertices(gap > 0 ? 0 : 24);
       options.max_gap = gap;
       options.boxes.boxes.pieces = when < 0.3 ? Pieces::apart : Pieces::together;
-      const Result<BudgetCage> made = make_budget_cage(model, options, progress);
+      const Result<BudgetCage> made = make_budget_cage(of, options, progress);
       if (made) { // it was through before it was told so
-        EXPECT_TRUE(is_valid(*made, model, true));
+        EXPECT_TRUE(is_valid(*made, of, true));
       } else {
         EXPECT_EQ(made.error().code, ErrorCode::cancelled) << made.error().message;
       }
     }
+  }
+}
+
+TEST(BudgetCage, OfNearlyTheSameModelOrOptionsIsNearlyTheSame) {
+  TriangleMesh model = make_torus(0.35, 48, 24);
+  for (Vec3& p : model.positions) {
+    p *= 1 + 0.1 * std::sin(7 * p.x()) * std::sin(5 * p.y()) * std::sin(6 * p.z());
+  }
+  const auto judged = [](const TriangleMesh& of, const BudgetCageOptions& options) {
+    const Result<BudgetCage> made = make_budget_cage(of, options);
+    EXPECT_TRUE(made);
+    return made ? measure_cage(made->cage, of) : CageMetrics{};
+  };
+  const BudgetCageOptions options = of_vertices(100);
+  const CageMetrics original = judged(model, options);
+
+  TriangleMesh noisy = model;
+  Random random(7);
+  const double noise = 1e-4 * diagonal(model.positions);
+  for (Vec3& p : noisy.positions) {
+    p += noise * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  }
+  BudgetCageOptions further = options;
+  further.improve.clearance = 0.0021;
+  const std::array<CageMetrics, 4> others = {
+      judged(noisy, options), judged(turned(model, 0.1, Vec3(1, 2, 3).normalized()), options),
+      judged(model, further), judged(model, of_vertices(98))};
+  for (const CageMetrics& other : others) {
+    EXPECT_NEAR(other.volume_ratio, original.volume_ratio, 0.02 * original.volume_ratio);
+    EXPECT_NEAR(other.mean_distance, original.mean_distance, 0.1 * original.mean_distance);
   }
 }
 
