@@ -3,6 +3,7 @@
 #include "cage/budget_pieces.h"
 #include "cage/improve_to_gap.h"
 #include "cage/pieces.h"
+#include "cage/quad_stage.h"
 #include "cage/symmetric_cage.h"
 #include "cage/unit_frame.h"
 #include "envelope/envelope.h"
@@ -68,10 +69,9 @@ Error not_valid(const ValidityReport& report) {
 }
 
 Result<Improved> within_gap(TriangleView start, TriangleView model,
-                            const ImproveOptions& improvement, const BudgetCageOptions& options,
-                            BudgetCage& made, const Progress& progress) {
-  Result<ImprovedToGap> result =
-      improve_to_gap(start, model, improvement, options.max_gap, progress);
+                            const ImproveOptions& improvement, double max_gap, BudgetCage& made,
+                            const Progress& progress) {
+  Result<ImprovedToGap> result = improve_to_gap(start, model, improvement, max_gap, progress);
   if (!result) {
     return result.error();
   }
@@ -123,18 +123,39 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
   ImproveOptions improvement = options.improve;
   improvement.clearance = made.clearance;
   const Progress improving = progress.part(started, improved);
-  Result<Improved> result = options.max_gap > 0
-                                ? within_gap(*start, model, improvement, options, made, improving)
-                                : improve(*start, model, improvement, improving);
-  if (!result) {
-    return result.error();
+  Result<ValidityReport> validity = ValidityReport();
+  if (options.quads) {
+    const MakeTriangles triangles = [&](int faces, double max_gap, const Progress& part_of_it) {
+      ImproveOptions own = improvement;
+      own.faces = faces;
+      return max_gap > 0 ? within_gap(*start, model, own, max_gap, made, part_of_it)
+                         : improve(*start, model, own, part_of_it);
+    };
+    Result<QuadStage> stage = make_quads_in_budget(triangles, model, options, improvement,
+                                                   diagonal(model.positions), improving);
+    if (!stage) {
+      return stage.error();
+    }
+    made.report = std::move(stage->report);
+    made.gap = stage->gap;
+    made.quads = stage->made.report;
+    made.polygons = std::move(stage->made.cage);
+    made.cage = to_triangle_mesh(*made.polygons);
+    watch.lap("improve");
+    validity =
+        validate_cage(*made.polygons, model, {.first_only = true}, progress.part(improved, 1));
+  } else {
+    Result<Improved> result = options.max_gap > 0 ? within_gap(*start, model, improvement,
+                                                               options.max_gap, made, improving)
+                                                  : improve(*start, model, improvement, improving);
+    if (!result) {
+      return result.error();
+    }
+    made.cage = std::move(result->cage);
+    made.report = std::move(result->report);
+    watch.lap("improve");
+    validity = validate_cage(made.cage, model, {.first_only = true}, progress.part(improved, 1));
   }
-  made.cage = std::move(result->cage);
-  made.report = std::move(result->report);
-  watch.lap("improve");
-
-  const Result<ValidityReport> validity =
-      validate_cage(made.cage, model, {.first_only = true}, progress.part(improved, 1));
   if (!validity) {
     return validity.error();
   }
@@ -142,53 +163,6 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
     return not_valid(*validity);
   }
   watch.lap("check");
-  return made;
-}
-
-/// The cage of triangles, made into one of quads.
-Result<BudgetCage> make_quad_cage(TriangleView model, BudgetCageOptions options,
-                                  const Progress& progress) {
-  if (options.max_gap > 0 || options.boxes.boxes.pieces == Pieces::apart ||
-      (options.symmetry != Symmetry::off && options.symmetry != Symmetry::automatic)) {
-    return Error{
-        ErrorCode::invalid_option,
-        "a cage of quads cannot be mirrored, in pieces or within a greatest gap yet; leave "
-        "out the quads, or the other option"};
-  }
-  constexpr double triangles_made = 0.5;
-  const bool was_to_be_mirrored = options.symmetry != Symmetry::off;
-  options.quads = false;
-  options.symmetry = Symmetry::off;
-  Result<BudgetCage> made = make_budget_cage(model, options, progress.part(0, triangles_made));
-  if (!made) {
-    return made;
-  }
-  if (was_to_be_mirrored) {
-    made->why_not_mirrored = "cages of quads are not mirrored yet";
-  }
-  Stopwatch watch(made->times);
-  QuadOptions quad_options = options.quad_options;
-  quad_options.clearance = made->clearance;
-  quad_options.square = options.improve.square;
-  quad_options.shape = options.improve.shape;
-  Result<Quadrangulated> quads =
-      make_quads(made->cage, model, quad_options, progress.part(triangles_made, improved));
-  if (!quads) {
-    return quads.error();
-  }
-  watch.lap("quads");
-  const Result<ValidityReport> validity =
-      validate_cage(quads->cage, model, {.first_only = true}, progress.part(improved, 1));
-  if (!validity) {
-    return validity.error();
-  }
-  if (!validity->valid()) {
-    return not_valid(*validity);
-  }
-  watch.lap("check");
-  made->cage = to_triangle_mesh(quads->cage);
-  made->polygons = std::move(quads->cage);
-  made->quads = quads->report;
   return made;
 }
 
@@ -235,8 +209,11 @@ Result<BudgetCage> make_all_pieces(TriangleView model, const BudgetCageOptions& 
   if (!made) {
     return made;
   }
-  const Result<ValidityReport> validity = validate_cage(
-      made->cage, model, {.allow_pieces = true, .first_only = true}, progress.part(improved, 1));
+  const ValidateOptions in_pieces{.allow_pieces = true, .first_only = true};
+  const Progress checking = progress.part(improved, 1);
+  const Result<ValidityReport> validity =
+      made->polygons ? validate_cage(*made->polygons, model, in_pieces, checking)
+                     : validate_cage(made->cage, model, in_pieces, checking);
   if (!validity) {
     return validity.error();
   }
@@ -247,9 +224,6 @@ Result<BudgetCage> make_all_pieces(TriangleView model, const BudgetCageOptions& 
 
 Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& asked,
                                     const Progress& progress) {
-  if (asked.quads) {
-    return make_quad_cage(model, asked, progress);
-  }
   if (asked.max_gap != 0) {
     if (const Status can = can_keep_gap(asked.max_gap, asked.improve.clearance); !can) {
       return can.error();

@@ -41,9 +41,8 @@ struct BudgetCageOptions {
   /// would meet or lie one within another, or that are too small for the budget, are joined.
   GenerateOptions boxes = {};
   Symmetry symmetry = Symmetry::off; ///< not with max_gap or Pieces::apart
-  /// Quads where they can be; not with max_gap or Pieces::apart, and not mirrored. The budget
-  /// of faces is that of the triangles they are made of. The clearance and the objective are those
-  /// of `improve`.
+  /// Quads where they can be. A quad counts as one face. The clearance, the density and the
+  /// objective are those of `improve`.
   bool quads = false;
   QuadOptions quad_options = {};
 };

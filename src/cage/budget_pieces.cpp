@@ -112,6 +112,53 @@ BudgetCageOptions options_for(const ModelPart& part, double whole, const BudgetC
   return own;
 }
 
+/// The triangles that the cage may be cut into: along the first diagonals of its quads, and along
+/// the others.
+std::vector<TriangleMesh> cuts(const BudgetCage& cage) {
+  std::vector<TriangleMesh> result{cage.cage};
+  if (cage.polygons) {
+    TriangleMesh other{cage.polygons->positions, {}};
+    for (std::size_t f = 0; f < cage.polygons->face_count(); ++f) {
+      const std::span<const Index> face = cage.polygons->face(f);
+      const std::size_t k = face.size() == 4 ? 1 : 0;
+      other.triangles.push_back({face[k], face[k + 1], face[k + 2]});
+      if (face.size() == 4) {
+        other.triangles.push_back({face[1], face[3], face[0]});
+      }
+    }
+    result.push_back(std::move(other));
+  }
+  return result;
+}
+
+bool are_apart(const BudgetCage& a, const BudgetCage& b) {
+  for (const TriangleMesh& s : cuts(a)) {
+    for (const TriangleMesh& t : cuts(b)) {
+      if (!is_embedded(joined(s, t))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Faces of both.
+PolygonMesh joined_faces(const PolygonMesh& a, const PolygonMesh& b) {
+  PolygonMesh all;
+  for (const PolygonMesh* mesh : {&a, &b}) {
+    const auto first = static_cast<Index>(all.positions.size());
+    all.positions.insert(all.positions.end(), mesh->positions.begin(), mesh->positions.end());
+    for (std::size_t f = 0; f < mesh->face_count(); ++f) {
+      std::vector<Index> face(mesh->face(f).begin(), mesh->face(f).end());
+      for (Index& v : face) {
+        v += first;
+      }
+      all.add_face(face);
+    }
+  }
+  return all;
+}
+
 /// Which groups must be joined because their cages meet or lie one within another: exact.
 std::vector<std::size_t> joins_of(const std::vector<std::optional<BudgetCage>>& cages) {
   std::vector<std::size_t> into(cages.size());
@@ -122,7 +169,7 @@ std::vector<std::size_t> joins_of(const std::vector<std::optional<BudgetCage>>& 
   }
   for (std::size_t a = 0; a < cages.size(); ++a) {
     for (std::size_t b = a + 1; b < cages.size() && into[a] == a; ++b) {
-      if (boxes[a].intersects(boxes[b]) && !is_embedded(joined(cages[a]->cage, cages[b]->cage))) {
+      if (boxes[a].intersects(boxes[b]) && !are_apart(*cages[a], *cages[b])) {
         into[a] = b;
       }
     }
@@ -155,6 +202,10 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
     BudgetCage& cage = *cages[g];
     const double factor = diagonal(parts[g].mesh.positions) / whole;
     all.cage = all.pieces == 0 ? std::move(cage.cage) : joined(all.cage, cage.cage);
+    if (cage.polygons) {
+      all.polygons = all.polygons ? joined_faces(*all.polygons, *cage.polygons) : cage.polygons;
+      all.quads = report_of(*all.polygons);
+    }
     all.clearance = std::min(all.clearance, cage.clearance * factor);
     all.report.objective += cage.report.objective * factor * factor * factor;
     all.report.simplify_seconds += cage.report.simplify_seconds;

@@ -1,8 +1,10 @@
 #include "cage/symmetric_cage.h"
 
+#include "cage/quad_stage.h"
 #include "envelope/envelope.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include "mesh/triangulate.h"
 #include "spatial/bvh.h"
 #include "validate/validate_cage.h"
 
@@ -181,27 +183,47 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
     }
     improvement.density = density;
   }
-  Result<Improved> result =
-      improve(*start, task.half.mesh, improvement, progress.part(started, improved));
-  if (!result) {
-    return result.error();
+  const Progress improving = progress.part(started, improved);
+  const Progress checking = progress.part(improved, 1);
+  // What is done to the faces of the half is done to both.
+  Result<ValidityReport> validity = ValidityReport();
+  if (options.quads) {
+    const MakeTriangles triangles = [&](int faces, double, const Progress& part) {
+      ImproveOptions own = improvement;
+      own.faces = faces;
+      return improve(*start, task.half.mesh, own, part);
+    };
+    Result<QuadStage> stage = make_quads_in_budget(triangles, task.half.mesh, options, improvement,
+                                                   task.diagonal, improving);
+    if (!stage) {
+      return stage.error();
+    }
+    made.report = std::move(stage->report);
+    watch.lap("improve");
+    Whole<PolygonMesh> whole = join_halves(stage->made.cage, task.frame);
+    made.quads = report_of(whole.mesh);
+    validity = validate_cage(whole.mesh, model, {.first_only = true}, checking);
+    made.cage = to_triangle_mesh(whole.mesh);
+    made.polygons = std::move(whole.mesh);
+    made.mirror = std::move(whole.pairing);
+  } else {
+    Result<Improved> result = improve(*start, task.half.mesh, improvement, improving);
+    if (!result) {
+      return result.error();
+    }
+    made.report = std::move(result->report);
+    watch.lap("improve");
+    Whole<TriangleMesh> whole = join_halves(result->cage, task.frame);
+    validity = validate_cage(whole.mesh, model, {.first_only = true}, checking);
+    made.cage = std::move(whole.mesh);
+    made.mirror = std::move(whole.pairing);
   }
-  const HalfCage half{std::move(result->cage), task.frame};
-  made.report = std::move(result->report);
-  watch.lap("improve");
-
-  // What is done to the faces of the half from here on is done to both.
-  Whole<TriangleMesh> whole = join_halves(half.mesh, half.frame);
-  const Result<ValidityReport> validity =
-      validate_cage(whole.mesh, model, {.first_only = true}, progress.part(improved, 1));
   if (!validity) {
     return validity.error();
   }
   if (!validity->valid()) {
     return not_valid(*validity);
   }
-  made.cage = std::move(whole.mesh);
-  made.mirror = std::move(whole.pairing);
   watch.lap("check");
   return made;
 }

@@ -267,12 +267,33 @@ private:
       moved.set_position(v, next[v]);
     }
     const FaceBoxes boxes(moved);
+    const auto has_changed = [&](const Triangle& t) {
+      return changed[t[0]] || changed[t[1]] || changed[t[2]];
+    };
+    const auto is_still = [&](const Triangle& t) {
+      return next[t[0]] == at_[t[0]] && next[t[1]] == at_[t[1]] && next[t[2]] == at_[t[2]];
+    };
+    // What was moved back to its old place was well there, and cannot yield: what is near it now
+    // has to be looked at again.
+    std::vector<std::uint8_t> due(moved.face_end(), 0);
+    std::vector<Index> near;
+    for (const Index f : faces_) {
+      const Triangle& t = moved.face(f);
+      due[f] = due[f] != 0 || has_changed(t) ? 1 : 0;
+      if (has_changed(t) && is_still(t)) {
+        near.clear();
+        boxes.find(
+            Box3(moved.position(t[0])).extend(moved.position(t[1])).extend(moved.position(t[2])),
+            near);
+        for (const Index g : near) {
+          due[g] = 1;
+        }
+      }
+    }
     std::vector<std::uint8_t> bad(faces_.size(), 0);
     parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
       const Triangle& t = moved.face(faces_[i]);
-      const bool still =
-          next[t[0]] == at_[t[0]] && next[t[1]] == at_[t[1]] && next[t[2]] == at_[t[2]];
-      if (still || !(changed[t[0]] || changed[t[1]] || changed[t[2]])) {
+      if (is_still(t) || due[faces_[i]] == 0) {
         return; // as before the step, when all was well; others report what they do to it
       }
       Patch patch; // the face by itself, taken out and put back

@@ -12,11 +12,12 @@
 namespace cagewright {
 namespace {
 
-ObjectiveWeights weights_for(TriangleView cage, const QuadOptions& options) {
+ObjectiveWeights weights_for(TriangleView cage, TriangleView model, const QuadOptions& options) {
   ObjectiveWeights weights;
   weights.square = options.square;
   weights.shape = options.shape;
   weights.typical_area = surface_area(cage) / static_cast<double>(cage.triangles.size());
+  set_emphasis(weights, model, options.density);
   return weights;
 }
 
@@ -159,6 +160,9 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   if (!(options.clearance > 0 && options.clearance < 1) || !(options.room >= 0)) {
     return Error{ErrorCode::invalid_option, "an option of the quads is out of its range"};
   }
+  if (!options.density.empty() && options.density.size() != model.positions.size()) {
+    return Error{ErrorCode::invalid_option, "there must be one density for each model vertex"};
+  }
   QuadCage cage(start);
   if (!border_is_in_plane(cage)) {
     return Error{ErrorCode::invalid_cage, "the cage to make quads of is open"};
@@ -166,7 +170,7 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   const TriangleMesh all = with_strays(model);
   const ModelSurface surface(all, options.diagonal);
   const double clearance = options.clearance * surface.diagonal;
-  const Objective objective(surface, weights_for(start, options));
+  const Objective objective(surface, weights_for(start, all, options));
   RelaxQuadsOptions make_room;
   make_room.steps = 3;
   make_room.keep = options.clearance + options.room;

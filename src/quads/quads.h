@@ -7,6 +7,8 @@
 #include "mesh/polygon_mesh.h"
 #include "quads/quad_shape.h"
 
+#include <span>
+
 namespace cagewright {
 
 struct QuadOptions {
@@ -18,6 +20,8 @@ struct QuadOptions {
   double room = 0.01;
   /// What lengths are fractions of. 0: the diagonal of the model's box.
   double diagonal = 0;
+  /// Where the cage is to be finer: see ImproveOptions. The view must live as long as the call.
+  std::span<const double> density = {};
   double square = 40;  ///< weight of large gaps: see ObjectiveWeights
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
 };

@@ -224,7 +224,8 @@ private:
     std::vector<BlockConstraint> constraints;
     // The program is scaled to lengths of the diagonal and to gradients near one.
     const double unit = objective_.diagonal();
-    const double scale = static_cast<double>(faces_.size()) / (unit * unit * unit);
+    const double scale = static_cast<double>(faces_.size()) /
+                         (objective_.weights().typical_emphasis * unit * unit * unit);
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const CageFace& face = cage_.face(faces_[i]);
       for (BlockConstraint c : pieces[i].constraints) {
@@ -542,20 +543,35 @@ private:
     }
   }
 
-  // Those among the faces with a changed vertex: what they do to others shows at them.
+  // Those among the moved faces that a change may have brought in trouble: faces with a changed
+  // vertex, and those near to what was moved back to its old place. (Such a face is not looked at
+  // itself: it was well there, and cannot yield.)
   [[nodiscard]] std::vector<Index>
   faces_in_trouble(const Positions& next, const std::vector<std::uint8_t>& changed) const {
     const std::vector<Box3> boxes = face_boxes(cage_, next);
+    const auto is_still = [&](const CageFace& face) {
+      const std::span<const Index> v = face.span();
+      return std::all_of(v.begin(), v.end(), [&](Index k) { return next[k] == at_[k]; });
+    };
+    const auto has_changed = [&](const CageFace& face) {
+      const std::span<const Index> v = face.span();
+      return std::any_of(v.begin(), v.end(), [&](Index k) { return changed[k] != 0; });
+    };
+    std::vector<Index> moved_back;
+    for (const Index f : faces_) {
+      if (has_changed(cage_.face(f)) && is_still(cage_.face(f))) {
+        moved_back.push_back(f);
+      }
+    }
     std::vector<std::uint8_t> bad(faces_.size(), 0);
     parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
       const CageFace& face = cage_.face(faces_[i]);
-      const std::span<const Index> v = face.span();
-      const bool still =
-          std::all_of(v.begin(), v.end(), [&](Index k) { return next[k] == at_[k]; });
-      const bool was_seen =
-          std::all_of(v.begin(), v.end(), [&](Index k) { return changed[k] == 0; });
-      if (still || was_seen) {
-        return; // as before the step, when all was well; others report what they do to it
+      const bool is_due =
+          has_changed(face) || std::any_of(moved_back.begin(), moved_back.end(), [&](Index f) {
+            return boxes[f].intersects(boxes[faces_[i]]);
+          });
+      if (!is_due || is_still(face)) {
+        return;
       }
       bad[i] = static_cast<std::uint8_t>(misshapen(next, faces_[i]) ||
                                          guard_.is_crossed(cage_, next, boxes, face, faces_[i]) ||

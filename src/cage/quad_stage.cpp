@@ -1,0 +1,104 @@
+#include "cage/quad_stage.h"
+
+#include "spatial/bvh.h"
+#include "validate/greatest_gap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cagewright {
+namespace {
+
+constexpr int attempts = 4;
+constexpr double triangles_made = 0.4;  // of the time of an attempt
+constexpr double usual_triangles = 1.8; // that one face comes from
+constexpr double gap_width = 0.002;     // of the greatest gap: how well it is bounded
+
+/// All quads cut along their first diagonal, or along their second.
+TriangleMesh cut(const PolygonMesh& mesh, std::size_t diagonal) {
+  TriangleMesh result{mesh.positions, {}};
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const Index> face = mesh.face(f);
+    const std::size_t k = face.size() == 4 ? diagonal : 0;
+    result.triangles.push_back({face[k], face[k + 1], face[k + 2]});
+    if (face.size() == 4) {
+      result.triangles.push_back({face[k], face[k + 2], face[(k + 3) % 4]});
+    }
+  }
+  return result;
+}
+
+double gap_of(const PolygonMesh& mesh, const TriangleBvh& model, double tolerance) {
+  return std::max(greatest_gap(cut(mesh, 0), model, tolerance).upper,
+                  greatest_gap(cut(mesh, 1), model, tolerance).upper);
+}
+
+} // namespace
+
+Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, TriangleView model,
+                                       const BudgetCageOptions& options,
+                                       const ImproveOptions& budget, double diagonal,
+                                       const Progress& progress) {
+  QuadOptions quads = options.quad_options;
+  quads.clearance = budget.clearance;
+  quads.square = budget.square;
+  quads.shape = budget.shape;
+  quads.density = budget.density;
+  quads.diagonal = diagonal;
+  const std::size_t sides = budget.extent == CageExtent::half ? 2 : 1;
+  const auto most = static_cast<std::size_t>(budget.faces);
+  int triangles = static_cast<int>(std::lround(usual_triangles * budget.faces));
+  double gap = options.max_gap;
+  std::optional<TriangleBvh> bvh;
+  std::optional<QuadStage> best;
+  for (int k = 0; k < attempts; ++k) {
+    const Progress part = progress.part(static_cast<double>(k) / attempts, (k + 1.0) / attempts);
+    Result<Improved> start = make_triangles(triangles, gap, part.part(0, triangles_made));
+    if (!start) {
+      return start.error();
+    }
+    Result<Quadrangulated> made =
+        make_quads(start->cage, model, quads, part.part(triangles_made, 1));
+    if (!made) {
+      return made.error();
+    }
+    QuadStage stage{std::move(start->report), std::move(*made), std::nullopt};
+    const std::size_t faces = sides * stage.made.cage.face_count();
+    bool fits = true;
+    if (options.max_gap > 0) {
+      if (!bvh) {
+        bvh.emplace(model);
+      }
+      const double width = gap_width * options.max_gap * diagonal;
+      stage.gap = gap_of(stage.made.cage, *bvh, width) / diagonal;
+      fits = *stage.gap <= options.max_gap;
+      if (!fits) {
+        stage.report.reached = false;
+        stage.report.why_not = "the quads are farther from the model than the triangles they were "
+                               "made of; allow more vertices, or leave out the quads";
+        constexpr double less = 0.95;
+        gap = std::max(1.05 * budget.clearance, less * gap * options.max_gap / *stage.gap);
+      }
+    }
+    if (budget.faces > 0 && faces > most) {
+      fits = false;
+      stage.report.reached = false;
+      stage.report.why_not = "no smaller cage of quads was found";
+      // In the end as few triangles as there may be faces: that is enough.
+      const double factor = 0.98 * static_cast<double>(most) / static_cast<double>(faces);
+      triangles = k + 2 < attempts ? static_cast<int>(factor * triangles) : budget.faces;
+    }
+    const bool is_nearer = !best || (stage.gap && best->gap && *stage.gap < *best->gap) ||
+                           (budget.faces > 0 && faces < sides * best->made.cage.face_count());
+    if (fits || is_nearer) {
+      best = std::move(stage);
+    }
+    if (fits) {
+      break;
+    }
+  }
+  return std::move(*best);
+}
+
+} // namespace cagewright
