@@ -206,7 +206,10 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
       all.polygons = all.polygons ? joined_faces(*all.polygons, *cage.polygons) : cage.polygons;
       all.quads = report_of(*all.polygons);
     }
-    all.clearance = std::min(all.clearance, cage.clearance * factor);
+    constexpr double rounding = 1e-12;
+    if (cage.clearance * factor < (1 - rounding) * all.clearance) {
+      all.clearance = cage.clearance * factor;
+    }
     all.report.objective += cage.report.objective * factor * factor * factor;
     all.report.simplify_seconds += cage.report.simplify_seconds;
     all.report.refine_seconds += cage.report.refine_seconds;
