@@ -2,6 +2,7 @@
 
 #include <QMetaObject>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <new>
@@ -34,18 +35,22 @@ void Job::start(Work work) {
   clock_.start();
   thread_ = std::jthread([this, work = std::move(work)](const std::stop_token& stop) {
     // Reports come one at a time; more than thirty a second would only burden the window.
+    // A bar that goes back looks like a mistake: it waits instead.
     auto last = std::chrono::steady_clock::time_point();
-    const Progress progress(stop, [this, last](double fraction, std::string_view step) mutable {
-      const auto now = std::chrono::steady_clock::now();
-      if (now - last < std::chrono::milliseconds(33) && fraction < 1) {
-        return;
-      }
-      last = now;
-      const QString text = QString::fromUtf8(step.data(), static_cast<qsizetype>(step.size()));
-      QMetaObject::invokeMethod(
-          this, [this, fraction, text] { Q_EMIT progressed(fraction, text); },
-          Qt::QueuedConnection);
-    });
+    double greatest = 0;
+    const Progress progress(
+        stop, [this, last, greatest](double fraction, std::string_view step) mutable {
+          fraction = greatest = std::max(greatest, fraction);
+          const auto now = std::chrono::steady_clock::now();
+          if (now - last < std::chrono::milliseconds(33) && fraction < 1) {
+            return;
+          }
+          last = now;
+          const QString text = QString::fromUtf8(step.data(), static_cast<qsizetype>(step.size()));
+          QMetaObject::invokeMethod(
+              this, [this, fraction, text] { Q_EMIT progressed(fraction, text); },
+              Qt::QueuedConnection);
+        });
     Result<Apply> result = run(work, progress);
     QMetaObject::invokeMethod(
         this,

@@ -19,7 +19,7 @@ struct Named {
 };
 
 constexpr std::array<Named, 5> tool_names = {
-    Named{"tool_box", "Select Box",
+    Named{"tool_box", "Box",
           "Drag a box round what to select (B). Shift adds, Shift+Ctrl takes away"},
     Named{"tool_lasso", "Lasso", "Draw round what to select. With any tool: hold Ctrl"},
     Named{"tool_move", "Move", "Drag the arrows to move the selection. G moves it at once"},
@@ -58,14 +58,14 @@ struct ChoiceText {
 
 constexpr std::array<ChoiceText, 4> choice_names = {
     ChoiceText{{"axes", "Axes", "Along which axes the gizmo and the keys X, Y, Z work"},
-               {Named{"axes_world", "World Axes", "The axes of the model's file"},
-                Named{"axes_local", "Local Axes", "Z along the normal of the selection"},
-                Named{"axes_view", "View Axes", "X to the right, Y up, Z towards you"}},
+               {Named{"axes_world", "World", "The axes of the model's file"},
+                Named{"axes_local", "Local", "Z along the normal of the selection"},
+                Named{"axes_view", "View", "X to the right, Y up, Z towards you"}},
                [](const ToolSettings& t) { return static_cast<int>(t.axes); },
                [](ToolSettings& t, int i) { t.axes = static_cast<AxesKind>(i); }},
     ChoiceText{{"pivot", "Pivot", "The point that stays where it is when turning and scaling"},
                {Named{"pivot_median", "Median", "The mean of the selected vertices"},
-                Named{"pivot_box", "Middle of Box", "The middle of the box round the selection"},
+                Named{"pivot_box", "Middle", "The middle of the box round the selection"},
                 Named{"pivot_individual", "Each Part",
                       "Each connected part of the selection turns about its own middle"}},
                [](const ToolSettings& t) { return static_cast<int>(t.pivot); },
