@@ -167,7 +167,7 @@ void MainWindow::make_panels() {
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
   resizeDocks({line}, {110}, Qt::Vertical);
   share_height(line, 110, sections, 280);
-  resizeDocks({figures_dock, select, layers}, {185, 195, 340}, Qt::Vertical);
+  resizeDocks({figures_dock, select, layers}, {212, 172, 340}, Qt::Vertical);
   connect(generate_, &GeneratePanel::loadCageRequested, this, &MainWindow::choose_cage);
   connect(guide_, &GuideBar::openRequested, this, &MainWindow::choose_model);
   connect(guide_, &GuideBar::exportRequested, this, &MainWindow::export_model);
