@@ -1,4 +1,6 @@
 // Tests in a window.
+#include "keep_libraries.h"
+
 #include <QApplication>
 #include <QDir>
 #include <QStandardPaths>

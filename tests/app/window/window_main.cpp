@@ -1,4 +1,6 @@
 // Tests of the whole window.
+#include "keep_libraries.h"
+
 #include <QApplication>
 #include <QDir>
 #include <QSettings>
