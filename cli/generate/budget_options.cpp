@@ -33,7 +33,10 @@ void add_budget_options(CLI::App& command, GenerateArguments& arguments) {
       ->default_str("")
       ->each(asked)
       ->group(group);
-  command.add_option("--faces", budget.improve.faces, "The same for triangles; both may be given")
+  command
+      .add_option("--faces", budget.improve.faces,
+                  "The same for faces: triangles, or with --quads faces as written; both may be "
+                  "given")
       ->check(CLI::Range(4, 200000))
       ->default_str("")
       ->each(asked)

@@ -1,0 +1,111 @@
+#include "cage/budget_cage.h"
+#include "mesh/shapes.h"
+#include "mesh/triangulate.h"
+#include "validate/validate_cage.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+namespace cagewright {
+namespace {
+
+TriangleMesh ellipsoid(const Vec3& center, const Vec3& half) {
+  TriangleMesh mesh = make_icosphere(2);
+  for (Vec3& p : mesh.positions) {
+    p = center + p.cwiseProduct(half);
+  }
+  return mesh;
+}
+
+/// A body with two arms, its own mirror image in the plane x = 3.
+TriangleMesh figure() {
+  TriangleMesh mesh = ellipsoid({3, 0, 0}, {1, 1.6, 0.7});
+  mesh = joined(mesh, ellipsoid({4.4, 0.6, 0.2}, {0.9, 0.25, 0.25}));
+  return joined(mesh, ellipsoid({1.6, 0.6, 0.2}, {0.9, 0.25, 0.25}));
+}
+
+BudgetCageOptions quads(int vertices) {
+  BudgetCageOptions options;
+  options.improve.vertices = vertices;
+  options.improve.rounds = 0;
+  options.quads = true;
+  return options;
+}
+
+/// The corners of a face, begun at the least.
+std::vector<Index> key(std::span<const Index> face) {
+  std::vector<Index> corners(face.begin(), face.end());
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+TEST(QuadCageWithinABudget, IsPairedExactlyWhenMirrored) {
+  const TriangleMesh model = figure();
+  BudgetCageOptions options = quads(40);
+  options.symmetry = Symmetry::automatic;
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made && made->mirror && made->polygons);
+  const PolygonMesh& cage = *made->polygons;
+  const MirrorPairing& mirror = *made->mirror;
+  EXPECT_LE(cage.positions.size(), 40U);
+  EXPECT_EQ(mirror.error, 0);
+  ASSERT_EQ(mirror.vertex_partners.size(), cage.positions.size());
+  ASSERT_EQ(mirror.face_partners.size(), cage.face_count());
+  for (Index v = 0; v < cage.positions.size(); ++v) {
+    const Vec3& p = cage.positions[v];
+    const Vec3& q = cage.positions[mirror.vertex_partners[v]];
+    EXPECT_EQ(p.x() - mirror.plane.offset, mirror.plane.offset - q.x());
+    EXPECT_EQ(p.y(), q.y());
+    EXPECT_EQ(p.z(), q.z());
+  }
+  for (Index f = 0; f < cage.face_count(); ++f) {
+    std::vector<Index> image;
+    for (const Index v : cage.face(f)) {
+      image.insert(image.begin(), mirror.vertex_partners[v]);
+    }
+    EXPECT_EQ(key(image), key(cage.face(mirror.face_partners[f])));
+  }
+  const Result<ValidityReport> report = validate_cage(cage, model);
+  EXPECT_TRUE(report && report->valid());
+}
+
+TEST(QuadCageWithinABudget, CountsAQuadAsOneFace) {
+  const TriangleMesh model = figure();
+  BudgetCageOptions options = quads(0);
+  options.improve.faces = 40;
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made && made->polygons);
+  EXPECT_TRUE(made->report.reached) << made->report.why_not;
+  EXPECT_LE(made->polygons->face_count(), 40U);
+  EXPECT_GT(made->cage.triangles.size(), 40U);
+}
+
+TEST(QuadCageWithinABudget, MayBeInPieces) {
+  TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.5, 0.5});
+  model = joined(model, ellipsoid({0, 2, 0}, {1, 0.5, 0.5}));
+  BudgetCageOptions options = quads(40);
+  options.boxes.boxes.pieces = Pieces::apart;
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made && made->polygons);
+  EXPECT_EQ(made->pieces, 2);
+  EXPECT_LE(made->polygons->positions.size(), 40U);
+  EXPECT_GT(made->quads->share, 0.5);
+  const Result<ValidityReport> report =
+      validate_cage(*made->polygons, model, {.allow_pieces = true});
+  EXPECT_TRUE(report && report->valid());
+}
+
+TEST(QuadCageWithinABudget, KeepsAGreatestGap) {
+  const TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.6, 0.6});
+  BudgetCageOptions options = quads(0);
+  options.max_gap = 0.1;
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made && made->polygons && made->gap);
+  EXPECT_LE(*made->gap, 0.1);
+}
+
+} // namespace
+} // namespace cagewright
