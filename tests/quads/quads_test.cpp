@@ -118,7 +118,7 @@ TEST_P(QuadsOf, AreManyAndValidAlongAnyDiagonalsAndKeepTheClearance) {
 INSTANTIATE_TEST_SUITE_P(
     Shapes, QuadsOf,
     testing::Values(Model{"Sphere", make_icosphere(3), 0.7},
-                    Model{"Torus", make_torus(0.3, 40, 20), 0.7}, Model{"Figure", figure(), 0.7},
+                    Model{"Torus", make_torus(0.3, 40, 20), 0.6}, Model{"Figure", figure(), 0.7},
                     Model{"TinyDistantFigure", moved(figure(), 1e-4, {10, -10, 10}), 0.7}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
