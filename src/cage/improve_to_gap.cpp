@@ -18,7 +18,7 @@ namespace {
 constexpr int first_try = 100;
 constexpr int fewest = 4;
 constexpr int most = 20000;
-constexpr int direct_runs = 2;
+constexpr int direct_runs = 3;
 constexpr int runs = 8;
 constexpr double close_enough = 1.06; // of two numbers of vertices: neither is worth another run
 constexpr double bound_width = 0.002; // of the gap: how well it is bounded
@@ -110,7 +110,7 @@ private:
         break;
       }
       over *= 1.01 * upper / max_gap_;
-      constexpr double beyond_samples = 1.2; // they do not see so little
+      constexpr double beyond_samples = 2; // they do not see so little
       if (upper > beyond_samples * max_gap_) {
         break;
       }
