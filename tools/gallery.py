@@ -133,6 +133,9 @@ def main():
     lines = ["# Gallery", "", "Made by `./dev gallery`: cages of 50, 100, 200 and 400 vertices at the default clearance of 0.002, judged by",
              "`cagewright compare`. Gaps and errors are in % of the model's diagonal. Bend and twist: how far the model that follows",
              "its cage is from the model deformed directly, in the mean, in the standard poses of [budget.md](budget.md#comparing).", ""]
+    end = ["## Where the models come from", "",
+           "From Debian's package libcgal-demo (data/meshes), unless said here. None of them is part of this repository."
+           + (" " + arguments.note if arguments.note else "")]
     with tempfile.TemporaryDirectory() as folder:
         gallery = Gallery(pathlib.Path(arguments.program).resolve(), images, pathlib.Path(folder))
         for model, view, up in models:
@@ -140,10 +143,7 @@ def main():
             if hand.exists():
                 lines += by_hand(gallery, model, hand, view, up)
             lines += chapter(gallery, model, view, up)
-    lines += ["## Where the models come from", "",
-              "From Debian's package libcgal-demo (data/meshes), unless said here. None of them is part of this repository."
-              + (" " + arguments.note if arguments.note else "")]
-    output.write_text("\n".join(lines) + "\n", encoding="utf-8")
+            output.write_text("\n".join(lines + end) + "\n", encoding="utf-8")
     total = sum(p.stat().st_size for p in images.iterdir())
     print(f"{output}: {total / 1e6:.1f} MB of pictures")
 
