@@ -49,3 +49,13 @@ generate --vertices 100 --symmetry auto -o "$work/cage.obj"
 draw_edited "$model" "$work/off.obj" --view 0:8 -o "$work/1.png"
 draw_edited "$model" "$work/cage.obj" --view 0:8 --beside "$work/1.png" -o "$work/2.png"
 draw_edited "$model" "$work/cage.obj" --view -35:12 --beside "$work/2.png" -o "$images/symmetry.png"
+
+# Quads: 60, 120 and 240 vertices.
+for vertices in 60 120 240; do
+  generate --vertices "$vertices" --quads -o "$work/cage.obj"
+  beside=()
+  [ "$vertices" = 60 ] || beside=(--beside "$work/quads.png")
+  draw_edited "$model" "$work/cage.obj" --view -35:12 "${beside[@]}" -o "$work/next.png"
+  mv "$work/next.png" "$work/quads.png"
+done
+mv "$work/quads.png" "$images/quads.png"
