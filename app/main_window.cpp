@@ -22,6 +22,7 @@
 #include <QMessageBox>
 #include <QMimeData>
 #include <QProgressBar>
+#include <QScreen>
 #include <QScrollArea>
 #include <QSettings>
 #include <QStatusBar>
@@ -84,7 +85,7 @@ MainWindow::MainWindow(const QDir& recovery_folder, QWidget* parent)
     : QMainWindow(parent), preferences_(Preferences::load()), recovery_(session_, recovery_folder) {
   setAcceptDrops(true);
   setDockNestingEnabled(true);
-  resize(1440, 900);
+  resize(QSize(1440, 900).boundedTo(screen()->availableSize())); // until the user says otherwise
   make_panels();
   make_status_bar();
   make_menus();
