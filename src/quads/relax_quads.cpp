@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "improve/block_program.h"
+#include "improve/face_terms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -280,27 +281,11 @@ private:
     const auto corner = [&](int k) { return of_quad ? (first + k) % 4 : k; };
     const double part = of_quad ? 0.5 : 1;
     const Vec3 n = normal / (2 * area);
-    double mean = 0;
-    for (int s = 0; s < 6; ++s) {
-      std::array<double, 3> share;
-      for (int k = 0; k < 3; ++k) {
-        const double spread = s < 3 ? 0.5 : -0.25; // three samples near the corners, three opposite
-        share[k] = s % 3 == k ? 1.0 / 3 + 2 * spread / 3 : 1.0 / 3 - spread / 3;
-      }
-      const Vec3 p = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
-      const SurfaceTree::Nearest near = objective_.nearest(p);
-      const double d = near.distance;
-      mean += objective_.gap(near) / 6;
-      if (!(d > 0)) {
-        continue;
-      }
-      const Vec3 u = (p - near.point) / d;
-      const Mat3 outer = part * area / 6 * objective_.gap_curvature(near) * u * u.transpose();
-      for (int k = 0; k < 3; ++k) {
-        piece.gradient[corner(k)] += part * area / 6 * share[k] * objective_.gap_slope(near) * u;
-        for (int m = 0; m < 3; ++m) {
-          piece.hessian[corner(k)][corner(m)] += share[k] * share[m] * outer;
-        }
+    const FaceTerms terms = volume_and_gap(objective_, t, center_);
+    for (int k = 0; k < 3; ++k) {
+      piece.gradient[corner(k)] += part * terms.gradient[k];
+      for (int m = 0; m < 3; ++m) {
+        piece.hessian[corner(k)][corner(m)] += part * terms.hessian[k][m];
       }
     }
     const double weight = of_quad ? 0 : objective_.shape_weight();
@@ -311,8 +296,6 @@ private:
       const int next = (k + 1) % 3;
       const int last = (k + 2) % 3;
       const Vec3 area_slope = n.cross(t[last] - t[next]) / 2;
-      piece.gradient[corner(k)] +=
-          part * ((t[next] - center_).cross(t[last] - center_) / 6 + mean * area_slope);
       slope[k] = 2 * (2 * t[k] - t[next] - t[last]) / scaled - (x + good_shape) / area * area_slope;
       piece.gradient[corner(k)] += 2 * weight * x * slope[k];
     }
