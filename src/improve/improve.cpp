@@ -120,39 +120,72 @@ private:
   // Tightens the cage, and moves vertices to where they pay: splits where a new vertex helps most,
   // then collapses what costs least. \returns the objective
   double refine(const Progress& progress) {
-    double best = settle(6, progress.part(0, 0.4));
+    double best = settle(6, progress.part(0, 0.3));
     WorkingCage kept = cage_;
     std::size_t count = std::max(budget_, cage_.mesh.vertex_count());
+    // Of so many vertices one is moved elsewhere in a round: many at first, and fewer whenever that
+    // has gained little. Changes that do not pay together may do so one by one.
+    std::size_t share = 3;
     for (int round = 0; round < options_.rounds && !progress.cancelled(); ++round) {
-      const Progress part = progress.part(0.4 + 0.6 * round / options_.rounds,
-                                          0.4 + 0.6 * (round + 1) / options_.rounds);
-      split_edges(cage_, guard_, objective_, std::max<std::size_t>(4, count / 6), most_valence_);
-      flip_edges(cage_, guard_, objective_, most_valence_);
-      relax_steps(2, part.part(0, 0.2));
-      reduce(Placement::clear_of_model, budget_, part.part(0.2, 0.4));
-      const double value = settle(4, part.part(0.4, 1));
+      const double begin = 0.3 + 0.6 * round / options_.rounds;
+      const double value = move_vertices(std::max(fewest, count / share),
+                                         progress.part(begin, begin + 0.6 / options_.rounds));
       const std::size_t made = cage_.mesh.vertex_count();
       const bool fewer = made < count && count > budget_;
-      if (made > count || (value >= best && !fewer)) {
+      constexpr double worth_the_same_again = 0.998;
+      const bool pays = made <= count && (value <= worth_the_same_again * best || fewer);
+      if (made <= count && (value < best || fewer)) {
+        count = std::max(budget_, made);
+        best = value;
+        kept = cage_;
+      } else {
+        cage_ = kept;
+      }
+      if (!pays && count / share <= fewest) {
         break;
       }
-      constexpr double worth_another_round = 0.998;
-      const bool last = value > worth_another_round * best && !fewer;
-      count = std::max(budget_, made);
-      best = value;
-      kept = cage_;
-      if (last) {
-        break;
-      }
+      share *= pays ? 1 : 2;
     }
-    cage_ = std::move(kept);
-    return std::min(best, relax_steps(4, Progress()));
+    return settle_shapes(progress.part(0.9, 1));
+  }
+
+  // Splits edges, and collapses as many.
+  double move_vertices(std::size_t count, const Progress& progress) {
+    split_edges(cage_, guard_, objective_, count, most_valence_);
+    flip_edges(cage_, guard_, objective_, most_valence_);
+    relax_steps(2, progress.part(0, 0.2));
+    reduce(Placement::clear_of_model, budget_, progress.part(0.2, 0.4));
+    return settle(4, progress.part(0.4, 1));
+  }
+
+  // Tightens the cage for the last time. If too many faces are thin then, their shape is made to
+  // count more until it is better. \returns the objective, as it was weighted before
+  double settle_shapes(const Progress& progress) {
+    relax_steps(4, progress.part(0, 0.25));
+    const double weight = objective_.weights().shape;
+    constexpr int attempts = 3;
+    constexpr double dearer = 3;
+    for (int i = 1; i <= attempts && has_thin_faces() && !progress.cancelled(); ++i) {
+      objective_.weigh_shape(weight * std::pow(dearer, i));
+      settle(4, progress.part(0.25 * i, 0.25 * (i + 1)));
+    }
+    objective_.weigh_shape(weight);
+    return objective_.total(cage_.mesh);
+  }
+
+  // Whether more than one face in twenty is long and thin.
+  [[nodiscard]] bool has_thin_faces() const {
+    constexpr double thin = 0.16;
+    std::size_t count = 0;
+    for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
+      count += cage_.mesh.has_face(f) && shape_quality(corners_of(cage_.mesh, f)) < thin ? 1 : 0;
+    }
+    return 20 * count >= cage_.mesh.face_count();
   }
 
   // As few vertices as the gap allows. A cage that is a little too coarse is refined where it is
   // too far away, and then edges are collapsed until none is left that can go without that.
   void coarsen_within_gap(const Progress& progress) {
-    constexpr std::size_t fewest = 4;
     const double limit = options_.max_gap * surface_.diagonal;
     // So many vertices are usually too few: gaps fall about with the power 0.8 of their number.
     const double guess = 1.6 * std::pow(options_.max_gap, -1.25);
@@ -217,6 +250,8 @@ private:
     flip_edges(cage_, guard_, objective_, most_valence_);
     return relax_steps(steps - steps / 2, progress.part(0.5, 1));
   }
+
+  static constexpr std::size_t fewest = 4; // vertices of a closed surface
 
   ImproveOptions options_;
   ModelSurface surface_;

@@ -19,13 +19,14 @@ struct ImproveOptions {
   /// start must keep it.
   double clearance = 0.002;
   int most_valence = 10; ///< faces at a vertex, unless the start has more or the budget needs more
-  /// How often the cage is refined and simplified again, to move vertices to where they pay.
-  int rounds = 3;
+  /// How often, at most, the cage is refined and simplified again, to move vertices to where they
+  /// pay.
+  int rounds = 6;
   double square = 40;  ///< weight of large gaps: see ObjectiveWeights
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
   /// How many times its final number of vertices the cage has when the quick way of simplifying it,
   /// which lets it grow, gives way to the careful one.
-  double careful_from = 4;
+  double careful_from = 6;
   /// Where the cage is to be finer: one weight above 0 for each vertex of the model, or empty:
   /// even. Only ratios matter. Where the weight is four times as large the edges of the cage come
   /// out about half as long (edge length ~ 1 / sqrt(density)); ratios beyond 100 count as 100. The
@@ -36,7 +37,8 @@ struct ImproveOptions {
   CageExtent extent = CageExtent::whole;
   /// Make the coarsest cage no face of which is farther from the model than this, in diagonals, at
   /// any of fifteen points of it; the budget is then a limit, which goes before. Where no split
-  /// brings the cage nearer, over a hollow, it may stay farther away. 0: as fine as the budget allows.
+  /// brings the cage nearer, over a hollow, it may stay farther away. 0: as fine as the budget
+  /// allows.
   double max_gap = 0;
   /// What lengths are fractions of. 0: the diagonal of the model's box.
   double diagonal = 0;

@@ -87,6 +87,7 @@ public:
   [[nodiscard]] bool widens_gap(const Corners& before, const Corners& after) const;
 
   void limit_gap(double most_gap) { weights_.most_gap = most_gap; }
+  void weigh_shape(double shape) { weights_.shape = shape; }
 
   /// The change of the whole objective by a patch, given the parts of the present faces.
   [[nodiscard]] double change(const CageMesh& cage, std::span<const double> face_values,

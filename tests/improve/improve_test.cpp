@@ -131,6 +131,17 @@ TEST_P(ImproveOf, GivesHalfOfAValidCageRoundTheModelAndItsMirrorImage) {
   }
 }
 
+TEST(Improve, LeavesAtMostOneFaceInTwentyThinHoweverLittleShapesAreToCount) {
+  const Result<Improved> made = improved(figure(), {.vertices = 24, .rounds = 1, .shape = 1e-4});
+  ASSERT_TRUE(made) << made.error().message;
+  const std::vector<Triangle>& faces = made->cage.triangles;
+  const auto thin = std::count_if(faces.begin(), faces.end(), [&](const Triangle& t) {
+    const std::vector<Vec3>& x = made->cage.positions;
+    return triangle_quality(x[t[0]], x[t[1]], x[t[2]]) < 0.15;
+  });
+  EXPECT_LE(20 * static_cast<std::size_t>(thin), faces.size());
+}
+
 TEST(Improve, OfASphereIsNearlyTheBestPolyhedron) {
   const TriangleMesh sphere = make_icosphere(4);
   const Result<Improved> made = improved(sphere, {.vertices = 42, .clearance = 1e-4});
