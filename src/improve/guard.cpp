@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 namespace cagewright {
 
@@ -69,6 +70,90 @@ std::vector<ModelSurface::Part> connected_parts(TriangleView model) {
     }
   }
   return parts;
+}
+
+// True only if the direction separates the points `s` from the points `t`, all relative to one
+// origin, whatever the rounding errors in the differences and products.
+bool separates(const Vec3& direction, std::span<const Vec3> s, std::span<const Vec3> t) {
+  constexpr double rounding = 1e-14; // a few times 2^-53, of sums of three products
+  const Vec3 size = direction.cwiseAbs();
+  double low_s = std::numeric_limits<double>::infinity();
+  double high_s = -low_s;
+  double low_t = low_s;
+  double high_t = -low_s;
+  double largest = 0;
+  for (const Vec3& p : s) {
+    const double x = direction.dot(p);
+    low_s = std::min(low_s, x);
+    high_s = std::max(high_s, x);
+    largest = std::max(largest, size.dot(p.cwiseAbs()));
+  }
+  for (const Vec3& p : t) {
+    const double x = direction.dot(p);
+    low_t = std::min(low_t, x);
+    high_t = std::max(high_t, x);
+    largest = std::max(largest, size.dot(p.cwiseAbs()));
+  }
+  // Not of products that underflow.
+  const double margin = rounding * largest + std::numeric_limits<double>::min();
+  return low_s > high_t + margin || low_t > high_s + margin;
+}
+
+// True only if the faces do not cross; it is much quicker than to find out exactly, above all for
+// faces in one plane. They must not share an edge.
+bool clearly_apart(const Triangle& s, const Corners& at_s, const Triangle& t, const Corners& at_t) {
+  int shared_s = -1;
+  int shared_t = -1;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (s[i] == t[j]) {
+        if (shared_s >= 0) {
+          return false;
+        }
+        shared_s = i;
+        shared_t = j;
+      }
+    }
+  }
+  const Vec3& origin = shared_s >= 0 ? at_s[shared_s] : at_s[0];
+  std::array<Vec3, 3> from_s;
+  std::array<Vec3, 3> from_t;
+  int count_s = 0;
+  int count_t = 0;
+  // A corner that both share lies on every plane through it: the others must lie beside.
+  for (int i = 0; i < 3; ++i) {
+    if (i != shared_s) {
+      from_s[count_s++] = at_s[i] - origin;
+    }
+    if (i != shared_t) {
+      from_t[count_t++] = at_t[i] - origin;
+    }
+  }
+  const std::span<const Vec3> all_s(from_s.data(), count_s);
+  const std::span<const Vec3> all_t(from_t.data(), count_t);
+  if (shared_s >= 0) {
+    // Both are cones from the corner: a plane through it has to separate them.
+    const Vec3 middle_s = from_s[0].normalized() + from_s[1].normalized();
+    const Vec3 middle_t = from_t[0].normalized() + from_t[1].normalized();
+    const auto apart = [&](const Vec3& direction) {
+      const std::array<Vec3, 1> corner = {Vec3::Zero()};
+      return separates(direction, all_s, corner) && separates(direction, all_t, corner) &&
+             (direction.dot(all_s[0]) > 0) != (direction.dot(all_t[0]) > 0);
+    };
+    return apart(middle_s - middle_t) || apart(middle_s.normalized() - middle_t.normalized());
+  }
+  const Vec3 normal_s = (from_s[1] - from_s[0]).cross(from_s[2] - from_s[0]);
+  const Vec3 normal_t = (from_t[1] - from_t[0]).cross(from_t[2] - from_t[0]);
+  if (separates(normal_s, all_s, all_t) || separates(normal_t, all_s, all_t)) {
+    return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (separates((from_s[(i + 1) % 3] - from_s[i]).cross(normal_s), all_s, all_t) ||
+        separates((from_t[(i + 1) % 3] - from_t[i]).cross(normal_t), all_s, all_t)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 } // namespace
@@ -234,6 +319,9 @@ Corners corners_after(const CageMesh& cage, const Patch& patch, const Triangle& 
 }
 
 bool faces_cross(const Triangle& s, const Corners& at_s, const Triangle& t, const Corners& at_t) {
+  if (clearly_apart(s, at_s, t, at_t)) {
+    return false;
+  }
   std::array<Vec3, 6> positions;
   std::copy(at_s.begin(), at_s.end(), positions.begin());
   std::copy(at_t.begin(), at_t.end(), positions.begin() + 3);
