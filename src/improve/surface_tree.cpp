@@ -1,6 +1,9 @@
 #include "improve/surface_tree.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -8,13 +11,11 @@ namespace cagewright {
 
 namespace {
 
-// Median splits quarter the count at every level: 2^31 triangles need 16, with three siblings
-// waiting at each.
-constexpr int deepest = 64;
+// Median splits divide the count by eight at every level: 2^31 triangles need 11, with seven
+// siblings waiting at each.
+constexpr int deepest = 96;
 
-// Rounding of a few operations on coordinates up to about four, in single precision. All tests of
-// boxes err by so much towards visiting them.
-constexpr float rounding = 4e-6F;
+constexpr float rounding = frame_rounding;
 
 // Half the size of the box of an empty slot.
 constexpr float nothing = -1e30F;
@@ -138,45 +139,6 @@ private:
 
 } // namespace
 
-[[gnu::always_inline]] inline SurfaceTree::Node::Interval
-SurfaceTree::Node::box_range(const float (&slope)[3]) const {
-  const Lanes at = center[0] * slope[0] + center[1] * slope[1] + center[2] * slope[2];
-  const Lanes box =
-      half[0] * std::abs(slope[0]) + half[1] * std::abs(slope[1]) + half[2] * std::abs(slope[2]);
-  return {at - box, at + box};
-}
-
-[[gnu::always_inline]] inline SurfaceTree::Node::Interval
-SurfaceTree::Node::range(const float (&slope)[3], float length) const {
-  const Lanes at = center[0] * slope[0] + center[1] * slope[1] + center[2] * slope[2];
-  const Lanes box =
-      half[0] * std::abs(slope[0]) + half[1] * std::abs(slope[1]) + half[2] * std::abs(slope[2]);
-  const Lanes along = normal[0] * slope[0] + normal[1] * slope[1] + normal[2] * slope[2];
-  constexpr float error = 1e-6F; // of a squared cosine
-  const Lanes across = ((1 + error) * length * length - along.square()).max(0).sqrt();
-  const Lanes plate = thickness * along.abs() + radius * across;
-  const Lanes plate_at = at + middle * along;
-  return {(at - box).max(plate_at - plate), (at + box).min(plate_at + plate)};
-}
-
-[[gnu::always_inline]] inline SurfaceTree::Lanes
-SurfaceTree::Node::squared_distance(const std::array<float, 3>& p) const {
-  Lanes box = Lanes::Zero();
-  Lanes squared = Lanes::Zero();
-  Lanes height = Lanes::Zero();
-  for (int k = 0; k < 3; ++k) {
-    const Lanes d = p[k] - center[k];
-    box += (d.abs() - half[k]).max(0).square();
-    squared += d.square();
-    height += normal[k] * d;
-  }
-  constexpr float error = 1e-6F;
-  const Lanes aside = ((1 - error) * squared - height.square()).max(0).sqrt();
-  const Lanes plate =
-      ((height - middle).abs() - thickness).max(0).square() + (aside - radius).max(0).square();
-  return box.max(plate);
-}
-
 SurfaceTree::SurfaceTree(TriangleView model) {
   std::vector<Corners> corners;
   corners.reserve(model.triangles.size());
@@ -188,7 +150,8 @@ SurfaceTree::SurfaceTree(TriangleView model) {
 
 void SurfaceTree::build(std::span<const Corners> corners) {
   struct Range { // of triangles in `order`
-    Index first, count;
+    Index first = 0;
+    Index count = 0;
   };
   Box3 all;
   std::vector<Vec3> middles;
@@ -230,31 +193,42 @@ void SurfaceTree::build(std::span<const Corners> corners) {
     Index node;
     Range range;
   };
+  // Level by level, the nodes of one in parallel: their numbers do not depend on the threads.
   nodes_.emplace_back();
   std::vector<Task> tasks = {{0, {0, static_cast<Index>(order.size())}}};
   while (!tasks.empty()) {
-    const Task task = tasks.back();
-    tasks.pop_back();
-    std::array<Range, width> ranges{task.range, Range{}, Range{}, Range{}};
-    if (task.range.count > 1) {
-      ranges[2] = cut(ranges[0]);
-      for (const int i : {0, 2}) {
-        if (ranges[i].count > 1) {
-          ranges[i + 1] = cut(ranges[i]);
+    std::vector<std::array<Range, width>> parts(tasks.size());
+    parallel_for(0, tasks.size(), 1, [&](std::size_t t) {
+      std::array<Range, width>& ranges = parts[t];
+      ranges[0] = tasks[t].range;
+      for (int step = width / 2; step > 0; step /= 2) {
+        for (int i = 0; i < width; i += 2 * step) {
+          if (ranges[i].count > 1) {
+            ranges[i + step] = cut(ranges[i]);
+          }
         }
       }
-    }
-    for (int i = 0; i < width; ++i) {
-      set_slot(nodes_[task.node], i, std::span(order).subspan(ranges[i].first, ranges[i].count),
-               corners);
-      Index child = ranges[i].first | leaf_bit;
-      if (ranges[i].count > 1) {
-        child = static_cast<Index>(nodes_.size());
-        nodes_.emplace_back();
-        tasks.push_back({child, ranges[i]});
+    });
+    std::vector<Task> next;
+    for (std::size_t t = 0; t < tasks.size(); ++t) {
+      for (int i = 0; i < width; ++i) {
+        const Range& range = parts[t][i];
+        Index child = range.first | leaf_bit;
+        if (range.count > 1) {
+          child = static_cast<Index>(nodes_.size());
+          nodes_.emplace_back();
+          next.push_back({child, range});
+        }
+        nodes_[tasks[t].node].child[i] = child;
       }
-      nodes_[task.node].child[i] = child;
     }
+    parallel_for(0, width * tasks.size(), 1, [&](std::size_t s) {
+      const auto slot = static_cast<int>(s % width);
+      const Range& range = parts[s / width][slot];
+      set_slot(nodes_[tasks[s / width].node], slot,
+               std::span(order).subspan(range.first, range.count), corners);
+    });
+    tasks = std::move(next);
   }
   triangles_.reserve(order.size());
   for (const Index i : order) {
@@ -264,7 +238,7 @@ void SurfaceTree::build(std::span<const Corners> corners) {
 }
 
 // The box and the plate of a range of triangles.
-void SurfaceTree::set_slot(Node& node, int slot, std::span<const Index> range,
+void SurfaceTree::set_slot(SurfaceNode& node, int slot, std::span<const Index> range,
                            std::span<const Corners> corners) const {
   Box3 box;
   Vec3 normal = Vec3::Zero();
@@ -308,15 +282,18 @@ void SurfaceTree::set_slot(Node& node, int slot, std::span<const Index> range,
   node.radius[slot] = static_cast<float>(std::sqrt(radius)) + rounding / 4;
 }
 
-std::array<float, 3> SurfaceTree::to_frame(const Vec3& p) const {
+void SurfaceTree::to_frame(const Vec3& p, float (&result)[3]) const {
   const Vec3 q = (p - origin_) * scale_;
-  return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
+  for (int k = 0; k < 3; ++k) {
+    result[k] = static_cast<float>(q[k]);
+  }
 }
 
 SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double error) const {
   Nearest best;
   double bound = within * within;
-  const std::array<float, 3> q = to_frame(p);
+  float q[3];
+  to_frame(p, q);
   // Squared distances in the frame beyond which a box cannot hold what is sought.
   const double shrink = scale_ * scale_ / ((1 + error) * (1 + error));
   const auto limit = [&] {
@@ -349,18 +326,17 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double e
       }
       continue;
     }
-    const Node& node = nodes_[entry.child];
-    const Lanes squared = node.squared_distance(q);
+    const SurfaceNode& node = nodes_[entry.child];
+    SurfaceNode::Lanes squared;
     // The farthest first on the stack: the nearest is looked at next.
     const int begin = top;
-    for (int i = 0; i < width; ++i) {
-      if (squared[i] < most) {
-        int at = top++;
-        for (; at > begin && stack[at - 1].squared < squared[i]; --at) {
-          stack[at] = stack[at - 1];
-        }
-        stack[at] = {squared[i], node.child[i]};
+    for (std::uint32_t set = children_near(node, q, most, squared); set != 0; set &= set - 1) {
+      const int i = std::countr_zero(set);
+      int at = top++;
+      for (; at > begin && stack[at - 1].squared < squared[i]; --at) {
+        stack[at] = stack[at - 1];
       }
+      stack[at] = {squared[i], node.child[i]};
     }
   }
   if (bound < within * within) {
@@ -374,25 +350,19 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double e
 template <class Visit>
 void SurfaceTree::visit_near(const Corners& triangle, double within, Visit visit) const {
   const TriangleBound bound(triangle);
-  const std::array<float, 3> center = to_frame(bound.center());
-  struct FloatAxis {
-    float normal[3];
-    float low, high;
-  };
-  std::array<FloatAxis, 4> axes;
-  int count = 0;
+  SlabQuery query{};
+  to_frame(bound.center(), query.center);
+  for (int k = 0; k < 3; ++k) {
+    query.half[k] = length_in_frame(bound.half()[k]);
+  }
   for (const TriangleBound::Axis& axis : bound.axes()) {
-    FloatAxis& a = axes[count++];
+    SlabQuery::Slab& slab = query.slab[query.count++];
     for (int k = 0; k < 3; ++k) {
-      a.normal[k] = static_cast<float>(axis.normal[k]);
+      slab.normal[k] = static_cast<float>(axis.normal[k]);
     }
     const double shift = axis.normal.dot(origin_);
-    a.high = static_cast<float>((axis.high - shift) * scale_);
-    a.low = axis.two_sided ? static_cast<float>((axis.low - shift) * scale_) : -1e30F;
-  }
-  float half[3];
-  for (int k = 0; k < 3; ++k) {
-    half[k] = length_in_frame(bound.half()[k]);
+    slab.high = static_cast<float>((axis.high - shift) * scale_);
+    slab.low = axis.two_sided ? static_cast<float>((axis.low - shift) * scale_) : -1e30F;
   }
   std::array<Index, deepest> stack;
   int top = 0;
@@ -411,24 +381,12 @@ void SurfaceTree::visit_near(const Corners& triangle, double within, Visit visit
       }
       continue;
     }
-    const Node& node = nodes_[child];
+    const SurfaceNode& node = nodes_[child];
     const float reach = length_in_frame(within) + rounding;
-    Lanes squared = Lanes::Zero();
-    for (int k = 0; k < 3; ++k) {
-      const float grown = half[k] + rounding;
-      squared += ((node.center[k] - center[k]).abs() - node.half[k] - grown).max(0).square();
-    }
-    Eigen::Array<bool, width, 1> beyond = squared > reach * reach;
-    for (int a = 0; a < count; ++a) {
-      const FloatAxis& axis = axes[a];
-      const Node::Interval range =
-          a == 0 ? node.range(axis.normal, 1) : node.box_range(axis.normal);
-      beyond = beyond || range.low - reach > axis.high || range.high + reach < axis.low;
-    }
-    for (int i = width - 1; i >= 0; --i) {
-      if (!beyond[i] && node.half[0][i] >= 0) {
-        stack[top++] = node.child[i];
-      }
+    for (std::uint32_t set = children_within(node, query, reach); set != 0;) {
+      const int i = std::bit_width(set) - 1;
+      stack[top++] = node.child[i];
+      set ^= std::uint32_t{1} << i;
     }
   }
 }
@@ -467,18 +425,15 @@ std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
   std::optional<Highest> best;
   const double floor = least;
   const HalfSpace ceiling{plane.normal, plane.offset + most};
-  struct FloatPlane {
-    float normal[3];
-    float offset;
-  };
-  const auto to_float = [&](const HalfSpace& h) {
-    return FloatPlane{{static_cast<float>(h.normal[0]), static_cast<float>(h.normal[1]),
-                       static_cast<float>(h.normal[2])},
-                      static_cast<float>((h.offset - h.normal.dot(origin_)) * scale_)};
-  };
-  const std::array<FloatPlane, 4> planes = {to_float(plane), to_float(sides[0]), to_float(sides[1]),
-                                            to_float(sides[2])};
-  const float upper = length_in_frame(most) + rounding;
+  PrismQuery query{};
+  for (int k = 0; k < 4; ++k) {
+    const HalfSpace& h = k == 0 ? plane : sides[k - 1];
+    for (int m = 0; m < 3; ++m) {
+      query.plane[k].normal[m] = static_cast<float>(h.normal[m]);
+    }
+    query.plane[k].offset = static_cast<float>((h.offset - h.normal.dot(origin_)) * scale_);
+  }
+  query.upper = length_in_frame(most) + rounding;
   float lower = length_in_frame(least) - rounding;
   struct Entry {
     float height;
@@ -520,29 +475,16 @@ std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
       }
       continue;
     }
-    const Node& node = nodes_[entry.child];
-    std::array<Lanes, 4> low;
-    Lanes high;
-    for (int a = 0; a < 4; ++a) {
-      const FloatPlane& f = planes[a];
-      const Node::Interval range = a == 0 ? node.range(f.normal, 1) : node.box_range(f.normal);
-      low[a] = range.low - f.offset;
-      if (a == 0) {
-        high = range.high - f.offset;
-      }
-    }
-    // What lies beyond the sides or the ceiling, as the greatest of its heights above them.
-    const Lanes over = (low[0] - upper).max(low[1].max(low[2]).max(low[3]) - rounding);
+    const SurfaceNode& node = nodes_[entry.child];
+    SurfaceNode::Lanes height;
     const int begin = top;
-    for (int i = 0; i < width; ++i) {
-      const bool meets = over[i] <= 0 && high[i] > lower && node.half[0][i] >= 0;
-      if (meets) { // the highest last on the stack: it is looked at next
-        int at = top++;
-        for (; at > begin && stack[at - 1].height > high[i]; --at) {
-          stack[at] = stack[at - 1];
-        }
-        stack[at] = {high[i], node.child[i]};
+    for (std::uint32_t set = children_above(node, query, lower, height); set != 0; set &= set - 1) {
+      const int i = std::countr_zero(set);
+      int at = top++; // the highest last on the stack: it is looked at next
+      for (; at > begin && stack[at - 1].height > height[i]; --at) {
+        stack[at] = stack[at - 1];
       }
+      stack[at] = {height[i], node.child[i]};
     }
   }
   return best;
@@ -644,15 +586,9 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
       }
     }
   };
-  // The three linear functions in the frame, in single precision.
-  struct Linear {
-    float slope[3];
-    float length; // of the slope
-    float offset;
-    float slack; // of rounding
-  };
+  // The linear functions in the frame, in single precision.
   const auto to_float = [&](const Vec3& slope, double offset) {
-    Linear f{};
+    ColumnQuery::Linear f{};
     for (int k = 0; k < 3; ++k) {
       f.slope[k] = static_cast<float>(slope[k] / scale_);
       f.slack += rounding * std::abs(f.slope[k]);
@@ -662,11 +598,10 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
     f.slack += rounding * std::abs(f.offset);
     return f;
   };
-  const std::array<Linear, 4> functions = {to_float(n, 0), to_float(cells * to_b, 0),
-                                           to_float(cells * to_c, 0),
-                                           to_float(-cells * (to_b + to_c), cells)};
-  const auto lowest = static_cast<float>(least);
-  const auto highest = static_cast<float>(most);
+  const ColumnQuery query{{to_float(n, 0), to_float(cells * to_b, 0), to_float(cells * to_c, 0),
+                           to_float(-cells * (to_b + to_c), cells)},
+                          static_cast<float>(least),
+                          static_cast<float>(most)};
   struct Entry {
     float height;
     float low_b, high_b, low_c, high_c;
@@ -686,26 +621,16 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
       add(triangles_[entry.child & ~leaf_bit]);
       continue;
     }
-    const Node& node = nodes_[entry.child];
-    std::array<Lanes, 4> low;
-    std::array<Lanes, 4> high;
-    for (int a = 0; a < 4; ++a) {
-      const Linear& f = functions[a];
-      const Node::Interval range = a == 0 ? node.range(f.slope, f.length) : node.box_range(f.slope);
-      low[a] = range.low + (f.offset - f.slack);
-      high[a] = range.high + (f.offset + f.slack);
-    }
+    const SurfaceNode& node = nodes_[entry.child];
+    ColumnRanges r;
     const int begin = top;
-    for (int i = 0; i < width; ++i) {
-      const bool meets = node.half[0][i] >= 0 && high[0][i] > lowest && low[0][i] < highest &&
-                         high[1][i] >= 0 && high[2][i] >= 0 && high[3][i] >= 0;
-      if (meets) { // the highest last on the stack: it is looked at next
-        int at = top++;
-        for (; at > begin && stack[at - 1].height > high[0][i]; --at) {
-          stack[at] = stack[at - 1];
-        }
-        stack[at] = {high[0][i], low[1][i], high[1][i], low[2][i], high[2][i], node.child[i]};
+    for (std::uint32_t set = children_in_column(node, query, r); set != 0; set &= set - 1) {
+      const int i = std::countr_zero(set);
+      int at = top++; // the highest last on the stack: it is looked at next
+      for (; at > begin && stack[at - 1].height > r.height[i]; --at) {
+        stack[at] = stack[at - 1];
       }
+      stack[at] = {r.height[i], r.low_b[i], r.high_b[i], r.low_c[i], r.high_c[i], node.child[i]};
     }
   }
   std::vector<Relief> result;

@@ -2,6 +2,7 @@
 /// The model as the improvement asks for it: how near, how clear, how high.
 #pragma once
 
+#include "improve/surface_node.h"
 #include "mesh/triangle_mesh.h"
 #include "spatial/distance.h"
 
@@ -88,35 +89,12 @@ public:
 
 private:
   static constexpr Index leaf_bit = Index{1} << 31U;
-  static constexpr int width = 4;
-  using Lanes = Eigen::Array4f;
+  static constexpr int width = SurfaceNode::width;
 
-  /// Four boxes in the tree's own frame, in single precision, large enough to make up for it, and
-  /// in each of them a plate: where the surface is nearly flat it is far thinner than the box. So
-  /// the cost of a query depends on how the surface bends, not on how finely it is cut. Empty slots
-  /// have boxes that nothing meets.
-  struct Node {
-    Lanes center[3];
-    Lanes half[3];
-    Lanes normal[3];    ///< of the plate
-    Lanes middle;       ///< its height above the center of the box, along the normal
-    Lanes thickness;    ///< half of it
-    Lanes radius;       ///< round the line through the center along the normal
-    Index child[width]; ///< a node, or a triangle with the leaf bit
-
-    struct Interval {
-      Lanes low, high;
-    };
-    /// Between which values the linear function slope . x is on the children, slope in the frame.
-    [[nodiscard]] Interval box_range(const float (&slope)[3]) const; ///< by their boxes alone
-    [[nodiscard]] Interval range(const float (&slope)[3], float length) const;
-    /// Lower bounds of the squared distances to the point.
-    [[nodiscard]] Lanes squared_distance(const std::array<float, 3>& p) const;
-  };
   void build(std::span<const Corners> corners);
-  void set_slot(Node& node, int slot, std::span<const Index> range,
+  void set_slot(SurfaceNode& node, int slot, std::span<const Index> range,
                 std::span<const Corners> corners) const;
-  [[nodiscard]] std::array<float, 3> to_frame(const Vec3& p) const;
+  void to_frame(const Vec3& p, float (&result)[3]) const;
   [[nodiscard]] float length_in_frame(double length) const {
     return static_cast<float>(length * scale_);
   }
@@ -126,7 +104,7 @@ private:
   double scale_ = 1; // the frame is (x - origin) * scale: the model fills about [-1, 1]^3
   std::vector<Corners> triangles_;
   std::vector<Index> numbers_; // of the triangles in the model
-  std::vector<Node> nodes_;
+  std::vector<SurfaceNode> nodes_;
 };
 
 } // namespace cagewright
