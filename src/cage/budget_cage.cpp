@@ -1,12 +1,12 @@
 #include "cage/budget_cage.h"
 
 #include "cage/budget_pieces.h"
+#include "cage/budget_start.h"
 #include "cage/improve_to_gap.h"
 #include "cage/pieces.h"
 #include "cage/quad_stage.h"
 #include "cage/symmetric_cage.h"
 #include "cage/unit_frame.h"
-#include "envelope/envelope.h"
 #include "mesh/measures.h"
 #include "mesh/triangulate.h"
 #include "spatial/bvh.h"
@@ -22,27 +22,6 @@ namespace {
 // Shares of the whole time, for the progress bar.
 constexpr double started = 0.1;
 constexpr double improved = 0.95;
-
-Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOptions& options,
-                                         BudgetCage& made, const Progress& progress) {
-  const ImproveOptions& budget = options.improve;
-  EnvelopeOptions start;
-  start.resolution = options.resolution;
-  start.closing = options.closing;
-  start.clearance = budget.clearance;
-  // A closed surface has half as many vertices as triangles, and two more.
-  start.vertices = budget.vertices > 0 ? budget.vertices
-                   : budget.faces > 0  ? budget.faces / 2 + 2
-                                       : start.vertices;
-  Result<Envelope> envelope_made = envelope(model, start, progress);
-  if (!envelope_made) {
-    return envelope_made.error();
-  }
-  made.resolution = envelope_made->resolution;
-  made.bridges = envelope_made->bridges;
-  made.clearance = budget.clearance;
-  return std::move(envelope_made->mesh);
-}
 
 Result<TriangleMesh> start_from_boxes(TriangleView model, const BudgetCageOptions& options,
                                       BudgetCage& made, const Progress& progress) {
@@ -62,11 +41,7 @@ Result<TriangleMesh> start_from_boxes(TriangleView model, const BudgetCageOption
   return start;
 }
 
-Error not_valid(const ValidityReport& report) {
-  return {ErrorCode::no_valid_cage, "the cage that was made did not pass the check (" +
-                                        std::string(name_of(report.violations.front().kind)) +
-                                        "); try another resolution"};
-}
+constexpr const char* remedy = "try another resolution";
 
 Result<Improved> within_gap(TriangleView start, TriangleView model,
                             const ImproveOptions& improvement, double max_gap, BudgetCage& made,
@@ -111,9 +86,10 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
     }
   }
   const Progress part = progress.part(0, started);
-  const Result<TriangleMesh> start = options.start == CageStart::envelope
-                                         ? start_from_envelope(model, options, made, part)
-                                         : start_from_boxes(model, options, made, part);
+  const Result<TriangleMesh> start =
+      options.start == CageStart::envelope
+          ? start_from_envelope(model, options, CageExtent::whole, 0, made, part)
+          : start_from_boxes(model, options, made, part);
   if (!start) {
     return start.error();
   }
@@ -160,7 +136,7 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
     return validity.error();
   }
   if (!validity->valid()) {
-    return not_valid(*validity);
+    return not_valid(*validity, remedy);
   }
   watch.lap("check");
   return made;
@@ -174,8 +150,8 @@ std::string why_not_to_mirror(const BudgetCageOptions& options) {
   if (options.boxes.boxes.pieces == Pieces::apart) {
     return "cages in pieces cannot be mirrored yet";
   }
-  if (options.max_gap > 0) {
-    return "a cage within a greatest gap cannot be mirrored yet";
+  if (options.max_gap > 0 && options.quads) {
+    return "a cage of quads within a greatest gap cannot be mirrored yet";
   }
   // It would count on both sides.
   if (options.symmetry == Symmetry::automatic && !options.improve.density.empty()) {
@@ -217,7 +193,7 @@ Result<BudgetCage> make_all_pieces(TriangleView model, const BudgetCageOptions& 
   if (!validity) {
     return validity.error();
   }
-  return validity->valid() ? std::move(made) : not_valid(*validity);
+  return validity->valid() ? std::move(made) : not_valid(*validity, remedy);
 }
 
 } // namespace

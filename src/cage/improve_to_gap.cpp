@@ -2,7 +2,6 @@
 
 #include "mesh/measures.h"
 #include "spatial/bvh.h"
-#include "validate/greatest_gap.h"
 
 #include <algorithm>
 #include <array>
@@ -32,10 +31,11 @@ std::string percent(double fraction) {
 
 class Search {
 public:
-  Search(TriangleView start, TriangleView model, const ImproveOptions& options, double max_gap)
-      : start_(start), model_(model), options_(options), max_gap_(max_gap),
-        diagonal_(diagonal(model.positions)), bvh_(model) {
-    limit_ = std::min<int>(most, static_cast<int>(start.positions.size()));
+  Search(TriangleView start, TriangleView model, const ImproveOptions& options, double max_gap,
+         const MeasureGap& measure)
+      : start_(start), model_(model), options_(options), max_gap_(max_gap), measure_(measure),
+        diagonal_(options.diagonal > 0 ? options.diagonal : diagonal(model.positions)) {
+    limit_ = std::min(most, vertices_of(start));
     if (options.vertices > 0) {
       limit_ = std::min(limit_, options.vertices);
     }
@@ -84,6 +84,14 @@ private:
     return text.data();
   }
 
+  [[nodiscard]] int vertices_of(TriangleView cage) const {
+    return static_cast<int>(whole_vertices(cage.positions, options_.extent));
+  }
+
+  [[nodiscard]] GreatestGap gap_of(const TriangleMesh& cage) const {
+    return measure_(cage, bound_width * max_gap_ * diagonal_);
+  }
+
   // The improvement heeds the gap at samples in each of its steps. If they have seen too little it
   // is done again for a smaller gap.
   Status try_directly(const Progress& progress) {
@@ -99,10 +107,8 @@ private:
       if (!improved) {
         return improved.error();
       }
-      const GreatestGap gap =
-          greatest_gap(improved->cage, bvh_, bound_width * max_gap_ * diagonal_);
-      const double upper = gap.upper / diagonal_;
-      const auto count = static_cast<int>(improved->cage.positions.size());
+      const double upper = gap_of(improved->cage).upper / diagonal_;
+      const int count = vertices_of(improved->cage);
       if (upper <= max_gap_ && count <= limit_) {
         improved->report.reached = true;
         improved->report.why_not.clear();
@@ -129,8 +135,8 @@ private:
     if (!improved) {
       return improved.error();
     }
-    const GreatestGap gap = greatest_gap(improved->cage, bvh_, bound_width * max_gap_ * diagonal_);
-    const auto made = static_cast<int>(improved->cage.positions.size());
+    const GreatestGap gap = gap_of(improved->cage);
+    const int made = vertices_of(improved->cage);
     const bool stuck = made > vertices;
     ImprovedToGap result{std::move(*improved), gap.upper / diagonal_};
     if (result.gap <= max_gap_) {
@@ -185,8 +191,8 @@ private:
   TriangleView model_;
   const ImproveOptions& options_;
   double max_gap_;
+  const MeasureGap& measure_;
   double diagonal_;
-  TriangleBvh bvh_;
   int limit_ = 0;
 
   std::optional<ImprovedToGap> fine_; // the coarsest that keeps the gap
@@ -211,11 +217,21 @@ Status can_keep_gap(double max_gap, double clearance) {
 
 Result<ImprovedToGap> improve_to_gap(TriangleView start, TriangleView model,
                                      const ImproveOptions& options, double max_gap,
-                                     const Progress& progress) {
+                                     const MeasureGap& measure, const Progress& progress) {
   if (const Status can = can_keep_gap(max_gap, options.clearance); !can) {
     return can.error();
   }
-  return Search(start, model, options, max_gap).run(progress);
+  return Search(start, model, options, max_gap, measure).run(progress);
+}
+
+Result<ImprovedToGap> improve_to_gap(TriangleView start, TriangleView model,
+                                     const ImproveOptions& options, double max_gap,
+                                     const Progress& progress) {
+  const TriangleBvh bvh(model);
+  const MeasureGap measure = [&](const TriangleMesh& cage, double tolerance) {
+    return greatest_gap(cage, bvh, tolerance);
+  };
+  return improve_to_gap(start, model, options, max_gap, measure, progress);
 }
 
 } // namespace cagewright

@@ -6,6 +6,9 @@
 #include "core/result.h"
 #include "improve/improve.h"
 #include "mesh/triangle_mesh.h"
+#include "validate/greatest_gap.h"
+
+#include <functional>
 
 namespace cagewright {
 
@@ -13,6 +16,10 @@ struct ImprovedToGap {
   Improved improved; ///< its report says whether the gap was kept, and why not
   double gap = 0;    ///< no point of the cage is farther from the model, in diagonals: proved
 };
+
+/// Bounds the distance from a cage, of which half may be given, to the model, to a tolerance: both
+/// in the model's units.
+using MeasureGap = std::function<GreatestGap(const TriangleMesh& cage, double tolerance)>;
 
 /// Whether a gap is above the clearance, so that a cage may keep both. Errors: invalid_option.
 Status can_keep_gap(double max_gap, double clearance);
@@ -29,7 +36,13 @@ Status can_keep_gap(double max_gap, double clearance);
 /// \param options  its vertices and faces are limits; 0: none. If they do not allow the gap, the
 ///                 nearest cage within them is returned, and the report says so.
 /// \param max_gap  in diagonals of the model's box
+/// \param measure  what decides how far a cage is from the model
 /// Errors: those of improve() and can_keep_gap().
+Result<ImprovedToGap> improve_to_gap(TriangleView start, TriangleView model,
+                                     const ImproveOptions& options, double max_gap,
+                                     const MeasureGap& measure, const Progress& progress = {});
+
+/// The same for a whole cage, by greatest_gap().
 Result<ImprovedToGap> improve_to_gap(TriangleView start, TriangleView model,
                                      const ImproveOptions& options, double max_gap,
                                      const Progress& progress = {});

@@ -1,7 +1,8 @@
 #include "cage/symmetric_cage.h"
 
+#include "cage/budget_start.h"
+#include "cage/improve_to_gap.h"
 #include "cage/quad_stage.h"
-#include "envelope/envelope.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "mesh/triangulate.h"
@@ -35,33 +36,7 @@ struct Task {
   double diagonal = 0; ///< of the model: what all lengths are fractions of
 };
 
-Error not_valid(const ValidityReport& report) {
-  return {ErrorCode::no_valid_cage, "the symmetric cage that was made did not pass the check (" +
-                                        std::string(name_of(report.violations.front().kind)) +
-                                        "); try another resolution, or --symmetry off"};
-}
-
-Result<TriangleMesh> half_envelope(const Task& task, const BudgetCageOptions& options,
-                                   BudgetCage& made, const Progress& progress) {
-  const ImproveOptions& budget = options.improve;
-  EnvelopeOptions start;
-  start.resolution = options.resolution;
-  start.closing = options.closing;
-  start.clearance = budget.clearance;
-  start.vertices = budget.vertices > 0 ? budget.vertices
-                   : budget.faces > 0  ? budget.faces / 2 + 2
-                                       : start.vertices;
-  start.half = true;
-  start.diagonal = task.diagonal;
-  Result<Envelope> envelope_made = envelope(in_frame(task.model, task.frame), start, progress);
-  if (!envelope_made) {
-    return envelope_made.error();
-  }
-  made.resolution = envelope_made->resolution;
-  made.bridges = envelope_made->bridges;
-  made.clearance = budget.clearance;
-  return std::move(envelope_made->mesh);
-}
+constexpr const char* remedy = "try another resolution, or --symmetry off";
 
 /// The model and its mirror image as one, unless they are the same.
 TriangleMesh with_image(const Task& task) {
@@ -110,6 +85,12 @@ Result<TriangleMesh> half_of_boxes(const Task& task, const BudgetCageOptions& op
   return std::move(*half);
 }
 
+Result<TriangleMesh> half_envelope(const Task& task, const BudgetCageOptions& options,
+                                   BudgetCage& made, const Progress& progress) {
+  return start_from_envelope(in_frame(task.model, task.frame), options, CageExtent::half,
+                             task.diagonal, made, progress);
+}
+
 Result<TriangleMesh> half_start(const Task& task, const BudgetCageOptions& options,
                                 BudgetCage& made, const Progress& progress) {
   if (options.start == CageStart::envelope) {
@@ -123,10 +104,25 @@ Result<TriangleMesh> half_start(const Task& task, const BudgetCageOptions& optio
   return half_envelope(task, options, made, progress.part(0.7, 1));
 }
 
-std::size_t whole_vertices(const TriangleMesh& half) {
-  const auto on_plane = std::count_if(half.positions.begin(), half.positions.end(),
-                                      [](const Vec3& p) { return p.x() == 0; });
-  return 2 * half.positions.size() - static_cast<std::size_t>(on_plane);
+/// Half a cage within the budget, or within the gap if one is asked for.
+Result<Improved> improve_half(const TriangleMesh& start, const Task& task,
+                              const BudgetCageOptions& options, const ImproveOptions& improvement,
+                              BudgetCage& made, const Progress& progress) {
+  if (!(options.max_gap > 0)) {
+    return improve(start, task.half.mesh, improvement, progress);
+  }
+  // The half keeps near the model and its mirror image. What counts is the model alone.
+  const TriangleBvh model(task.model);
+  const MeasureGap measure = [&](const TriangleMesh& half, double tolerance) {
+    return greatest_gap(join_halves(half, task.frame).mesh, model, tolerance);
+  };
+  Result<ImprovedToGap> result =
+      improve_to_gap(start, task.half.mesh, improvement, options.max_gap, measure, progress);
+  if (!result) {
+    return result.error();
+  }
+  made.gap = result->gap;
+  return std::move(result->improved);
 }
 
 } // namespace
@@ -169,7 +165,7 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
   if (!start) {
     return start.error();
   }
-  made.start_vertices = whole_vertices(*start);
+  made.start_vertices = whole_vertices(start->positions, CageExtent::half);
   watch.lap(made.boxes ? "boxes" : "envelope");
 
   ImproveOptions improvement = options.improve;
@@ -207,7 +203,7 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
     made.polygons = std::move(whole.mesh);
     made.mirror = std::move(whole.pairing);
   } else {
-    Result<Improved> result = improve(*start, task.half.mesh, improvement, improving);
+    Result<Improved> result = improve_half(*start, task, options, improvement, made, improving);
     if (!result) {
       return result.error();
     }
@@ -222,7 +218,7 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
     return validity.error();
   }
   if (!validity->valid()) {
-    return not_valid(*validity);
+    return not_valid(*validity, remedy);
   }
   watch.lap("check");
   return made;

@@ -3,6 +3,8 @@
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "spatial/bvh.h"
+#include "support/figures.h"
+#include "validate/greatest_gap.h"
 #include "validate/validate_cage.h"
 
 #include <gtest/gtest.h>
@@ -14,13 +16,7 @@
 namespace cagewright {
 namespace {
 
-TriangleMesh ellipsoid(const Vec3& center, const Vec3& half) {
-  TriangleMesh mesh = make_icosphere(2);
-  for (Vec3& p : mesh.positions) {
-    p = center + p.cwiseProduct(half);
-  }
-  return mesh;
-}
+using test::ellipsoid;
 
 // A body with a head and two arms, one of which may hang lower; and two crumbs beside it.
 TriangleMesh figure(double lower = 0) {
@@ -116,6 +112,25 @@ TEST(SymmetricCage, IsNotMadeOfAModelThatIsNot) {
   const Result<BudgetCage> off = make_budget_cage(figure(), options(40, Symmetry::off));
   EXPECT_FALSE(off->mirror);
   EXPECT_EQ(off->why_not_mirrored, "");
+}
+
+TEST(SymmetricCage, StaysWithinAGapOfTheModelAndNotOnlyOfItsMirrorImage) {
+  // The lower arm's image is where the model has nothing.
+  for (const double lower : {0.0, 1.2}) {
+    const TriangleMesh model = figure(lower);
+    BudgetCageOptions wanted = options(60, Symmetry::x);
+    wanted.max_gap = 0.1;
+    const Result<BudgetCage> made = make_budget_cage(model, wanted);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_TRUE(validate_cage(made->cage, model)->valid());
+    expect_paired_exactly(*made);
+    const double diag = diagonal(model.positions);
+    const GreatestGap gap = greatest_gap(made->cage, TriangleBvh(model), 1e-4 * diag);
+    EXPECT_LE(gap.lower, *made->gap * diag);
+    EXPECT_GE(gap.upper, 0.99 * *made->gap * diag);
+    EXPECT_EQ(made->report.reached, *made->gap <= wanted.max_gap);
+    EXPECT_EQ(made->report.reached, lower == 0) << *made->gap;
+  }
 }
 
 TEST(SymmetricCage, InAnyPlaneIsPairedToRounding) {

@@ -3,6 +3,7 @@
 #include "core/random.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include "support/figures.h"
 #include "support/models.h"
 
 #include <gtest/gtest.h>
@@ -14,21 +15,15 @@
 namespace cagewright {
 namespace {
 
-TriangleMesh ellipsoid(const Vec3& center, const Vec3& half) {
-  TriangleMesh mesh = make_icosphere(3);
-  for (Vec3& p : mesh.positions) {
-    p = center + p.cwiseProduct(half);
-  }
-  return mesh;
-}
+using test::ellipsoid;
 
 // A body with a head, a nose and two arms: its own mirror image in x = 0 and in no other plane.
 TriangleMesh figure() {
-  TriangleMesh mesh = ellipsoid({0, 0, 0}, {1, 1.6, 0.7});
-  mesh = joined(mesh, ellipsoid({0, 2, 0.2}, {0.6, 0.6, 0.6}));
-  mesh = joined(mesh, ellipsoid({0, 2, 0.9}, {0.15, 0.15, 0.3}));
-  mesh = joined(mesh, ellipsoid({1.4, 0.6, 0.2}, {0.9, 0.25, 0.25}));
-  return joined(mesh, ellipsoid({-1.4, 0.6, 0.2}, {0.9, 0.25, 0.25}));
+  TriangleMesh mesh = ellipsoid({0, 0, 0}, {1, 1.6, 0.7}, 3);
+  mesh = joined(mesh, ellipsoid({0, 2, 0.2}, {0.6, 0.6, 0.6}, 3));
+  mesh = joined(mesh, ellipsoid({0, 2, 0.9}, {0.15, 0.15, 0.3}, 3));
+  mesh = joined(mesh, ellipsoid({1.4, 0.6, 0.2}, {0.9, 0.25, 0.25}, 3));
+  return joined(mesh, ellipsoid({-1.4, 0.6, 0.2}, {0.9, 0.25, 0.25}, 3));
 }
 
 TriangleMesh moved(TriangleMesh mesh, const Mat3& turn, double scale, const Vec3& offset) {
@@ -104,9 +99,9 @@ TEST(MirrorPlane, DoesNotDependOnHowTheSurfaceIsCutIntoTriangles) {
 }
 
 TEST(MirrorPlane, IsNotFoundWhereThereIsNone) {
-  TriangleMesh mesh = ellipsoid({0, 0, 0}, {1, 1.6, 0.7});
-  mesh = joined(mesh, ellipsoid({1.2, 0.5, 0.3}, {0.9, 0.3, 0.3}));
-  mesh = joined(mesh, ellipsoid({-0.3, 1.5, 0.9}, {0.3, 0.5, 0.8}));
+  TriangleMesh mesh = ellipsoid({0, 0, 0}, {1, 1.6, 0.7}, 3);
+  mesh = joined(mesh, ellipsoid({1.2, 0.5, 0.3}, {0.9, 0.3, 0.3}, 3));
+  mesh = joined(mesh, ellipsoid({-0.3, 1.5, 0.9}, {0.3, 0.5, 0.8}, 3));
   EXPECT_FALSE(detect_mirror_plane(mesh));
   EXPECT_FALSE(detect_mirror_plane(TriangleMesh()));
   const TriangleMesh point{{{1, 2, 3}}, {{0, 0, 0}}};

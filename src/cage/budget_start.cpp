@@ -1,0 +1,40 @@
+#include "cage/budget_start.h"
+
+#include "envelope/envelope.h"
+
+#include <string>
+#include <utility>
+
+namespace cagewright {
+
+Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOptions& options,
+                                         CageExtent extent, double diagonal, BudgetCage& made,
+                                         const Progress& progress) {
+  const ImproveOptions& budget = options.improve;
+  EnvelopeOptions start;
+  start.resolution = options.resolution;
+  start.closing = options.closing;
+  start.clearance = budget.clearance;
+  // A closed surface has half as many vertices as triangles, and two more.
+  start.vertices = budget.vertices > 0 ? budget.vertices
+                   : budget.faces > 0  ? budget.faces / 2 + 2
+                                       : start.vertices;
+  start.half = extent == CageExtent::half;
+  start.diagonal = diagonal;
+  Result<Envelope> envelope_made = envelope(model, start, progress);
+  if (!envelope_made) {
+    return envelope_made.error();
+  }
+  made.resolution = envelope_made->resolution;
+  made.bridges = envelope_made->bridges;
+  made.clearance = budget.clearance;
+  return std::move(envelope_made->mesh);
+}
+
+Error not_valid(const ValidityReport& report, const char* remedy) {
+  return {ErrorCode::no_valid_cage, "the cage that was made did not pass the check (" +
+                                        std::string(name_of(report.violations.front().kind)) +
+                                        "); " + remedy};
+}
+
+} // namespace cagewright

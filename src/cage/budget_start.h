@@ -1,0 +1,24 @@
+/// \file
+/// What cages with a budget have in common, whole or made by halves. Internal to this module.
+#pragma once
+
+#include "cage/budget_cage.h"
+#include "validate/validate_cage.h"
+
+namespace cagewright {
+
+/// The envelope that a cage with these options starts from; `made` gets what is known about it.
+///
+/// \param extent    with half: that of the model and its mirror image in the plane x = 0
+/// \param diagonal  what lengths are fractions of
+/// Errors: those of envelope().
+Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOptions& options,
+                                         CageExtent extent, double diagonal, BudgetCage& made,
+                                         const Progress& progress = {});
+
+/// The error that a cage which did not pass the check is answered with.
+///
+/// \param remedy  the last words of the message: what else to try
+Error not_valid(const ValidityReport& report, const char* remedy);
+
+} // namespace cagewright
