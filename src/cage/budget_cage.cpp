@@ -3,6 +3,7 @@
 #include "cage/budget_pieces.h"
 #include "cage/budget_start.h"
 #include "cage/improve_to_gap.h"
+#include "cage/not_valid.h"
 #include "cage/pieces.h"
 #include "cage/quad_stage.h"
 #include "cage/symmetric_cage.h"

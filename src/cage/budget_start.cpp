@@ -2,7 +2,6 @@
 
 #include "envelope/envelope.h"
 
-#include <string>
 #include <utility>
 
 namespace cagewright {
@@ -29,12 +28,6 @@ Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOpt
   made.bridges = envelope_made->bridges;
   made.clearance = budget.clearance;
   return std::move(envelope_made->mesh);
-}
-
-Error not_valid(const ValidityReport& report, const char* remedy) {
-  return {ErrorCode::no_valid_cage, "the cage that was made did not pass the check (" +
-                                        std::string(name_of(report.violations.front().kind)) +
-                                        "); " + remedy};
 }
 
 } // namespace cagewright

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "cage/budget_cage.h"
-#include "validate/validate_cage.h"
 
 namespace cagewright {
 
@@ -15,10 +14,5 @@ namespace cagewright {
 Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOptions& options,
                                          CageExtent extent, double diagonal, BudgetCage& made,
                                          const Progress& progress = {});
-
-/// The error that a cage which did not pass the check is answered with.
-///
-/// \param remedy  the last words of the message: what else to try
-Error not_valid(const ValidityReport& report, const char* remedy);
 
 } // namespace cagewright

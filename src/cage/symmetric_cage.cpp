@@ -2,6 +2,7 @@
 
 #include "cage/budget_start.h"
 #include "cage/improve_to_gap.h"
+#include "cage/not_valid.h"
 #include "cage/quad_stage.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
