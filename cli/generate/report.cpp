@@ -102,14 +102,15 @@ nlohmann::json to_json(const QuadReport& quads) {
           {"max_bend_degrees", quads.max_bend_degrees},
           {"min_angle_degrees", quads.min_angle_degrees},
           {"max_angle_degrees", quads.max_angle_degrees},
-          {"rings", quads.rings}};
+          {"rings", quads.rings},
+          {"loops", quads.loops}};
 }
 
 std::string quads_line(const QuadReport& quads) {
   return fmt::format("  {} quads and {} triangles: {:.0f} % quads, bent by up to {:.0f} degrees; "
-                     "{} closed strips of quads\n",
+                     "{} closed strips of quads, {} closed loops of edges\n",
                      quads.quads, quads.triangles, 100 * quads.share, quads.max_bend_degrees,
-                     quads.rings);
+                     quads.rings, quads.loops);
 }
 
 } // namespace

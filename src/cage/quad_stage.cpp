@@ -1,5 +1,6 @@
 #include "cage/quad_stage.h"
 
+#include "quads/grid_quads.h"
 #include "spatial/bvh.h"
 #include "validate/greatest_gap.h"
 
@@ -15,6 +16,21 @@ constexpr double triangles_made = 0.4;  // of the time of an attempt
 constexpr double usual_triangles = 1.8; // that one face comes from
 constexpr double gap_width = 0.002;     // of the greatest gap: how well it is bounded
 
+std::size_t sides_of(const ImproveOptions& budget) {
+  return budget.extent == CageExtent::half ? 2 : 1;
+}
+
+bool is_within(const PolygonMesh& cage, const ImproveOptions& budget) {
+  std::size_t on_plane = 0;
+  for (const Vec3& p : cage.positions) {
+    on_plane += budget.extent == CageExtent::half && p.x() == 0 ? 1 : 0;
+  }
+  const std::size_t vertices = sides_of(budget) * cage.positions.size() - on_plane;
+  const std::size_t faces = sides_of(budget) * cage.face_count();
+  return (budget.vertices == 0 || vertices <= static_cast<std::size_t>(budget.vertices)) &&
+         (budget.faces == 0 || faces <= static_cast<std::size_t>(budget.faces));
+}
+
 /// All quads cut along their first diagonal, or along their second.
 TriangleMesh cut(const PolygonMesh& mesh, std::size_t diagonal) {
   TriangleMesh result{mesh.positions, {}};
@@ -29,31 +45,56 @@ TriangleMesh cut(const PolygonMesh& mesh, std::size_t diagonal) {
   return result;
 }
 
+/// A cage of blocks, as tight as it gets.
+Result<QuadStage> quads_of_blocks(TriangleView model, const QuadOptions& quads,
+                                  const ImproveOptions& budget, double loosest,
+                                  const Progress& progress) {
+  // The exchange of loops makes a cage of blocks tighter by so much, and not by more.
+  constexpr double gain = 1.6;
+  GridQuadOptions options;
+  options.loosest = gain * loosest;
+  options.quads = quads;
+  options.vertices = budget.vertices;
+  options.faces = budget.faces;
+  options.half = budget.extent == CageExtent::half;
+  Result<Quadrangulated> made = make_grid_quads(model, options, progress);
+  if (!made) {
+    return made.error();
+  }
+  QuadStage stage{{}, std::move(*made), std::nullopt};
+  stage.report.reached = is_within(stage.made.cage, budget);
+  return stage;
+}
+
+/// How many times as loose as quads made of triangles a cage of blocks may be: rings of edges are
+/// worth some room between cage and model, and more if too few of those faces are quads.
+double worth_of_rings(const QuadReport& pairs) {
+  constexpr double enough = 0.7; // of the faces
+  return pairs.share < enough ? 2 : 1.6;
+}
+
 double gap_of(const PolygonMesh& mesh, const TriangleBvh& model, double tolerance) {
   return std::max(greatest_gap(cut(mesh, 0), model, tolerance).upper,
                   greatest_gap(cut(mesh, 1), model, tolerance).upper);
 }
 
-} // namespace
-
-Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, TriangleView model,
-                                       const BudgetCageOptions& options,
-                                       const ImproveOptions& budget, double diagonal,
-                                       const Progress& progress) {
-  QuadOptions quads = options.quad_options;
-  quads.clearance = budget.clearance;
-  quads.square = budget.square;
-  quads.shape = budget.shape;
-  quads.density = budget.density;
-  quads.diagonal = diagonal;
-  const std::size_t sides = budget.extent == CageExtent::half ? 2 : 1;
+/// Triangles, and quads made of them.
+Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, TriangleView model,
+                               const BudgetCageOptions& options, const QuadOptions& quads,
+                               const ImproveOptions& budget, const Progress& progress) {
+  const double diagonal = quads.diagonal;
+  const std::size_t sides = sides_of(budget);
   const auto most = static_cast<std::size_t>(budget.faces);
   int triangles = static_cast<int>(std::lround(usual_triangles * budget.faces));
   double gap = options.max_gap;
   std::optional<TriangleBvh> bvh;
   std::optional<QuadStage> best;
   for (int k = 0; k < attempts; ++k) {
-    const Progress part = progress.part(static_cast<double>(k) / attempts, (k + 1.0) / attempts);
+    // The first attempt fits unless there is more to keep to than a number of vertices.
+    const bool may_fail = options.max_gap > 0 || budget.faces > 0;
+    const Progress part =
+        may_fail ? progress.part(static_cast<double>(k) / attempts, (k + 1.0) / attempts)
+                 : progress;
     Result<Improved> start = make_triangles(triangles, gap, part.part(0, triangles_made));
     if (!start) {
       return start.error();
@@ -99,6 +140,39 @@ Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, Tria
     }
   }
   return std::move(*best);
+}
+
+} // namespace
+
+Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, TriangleView model,
+                                       const BudgetCageOptions& options,
+                                       const ImproveOptions& budget, double diagonal,
+                                       const Progress& progress) {
+  QuadOptions quads = options.quad_options;
+  quads.clearance = budget.clearance;
+  quads.square = budget.square;
+  quads.shape = budget.shape;
+  quads.density = budget.density;
+  quads.diagonal = diagonal;
+  // Of blocks nothing is known about the greatest gap.
+  const bool try_blocks = options.max_gap == 0 && (budget.vertices > 0 || budget.faces > 0);
+  constexpr double paired = 0.5; // of the time
+  Result<QuadStage> pairs = paired_quads(make_triangles, model, options, quads, budget,
+                                         progress.part(0, try_blocks ? paired : 1));
+  if (!pairs || !try_blocks) {
+    return pairs;
+  }
+  const double most =
+      worth_of_rings(pairs->made.report) * looseness(pairs->made.cage, model, quads);
+  const double loosest = pairs->report.reached ? most : 0; // 0: any
+  const Result<QuadStage> blocks =
+      quads_of_blocks(model, quads, budget, loosest, progress.part(paired, 1));
+  if (!blocks && blocks.error().code == ErrorCode::cancelled) {
+    return blocks;
+  }
+  const bool is_better = blocks && blocks->report.reached &&
+                         (loosest == 0 || looseness(blocks->made.cage, model, quads) <= loosest);
+  return is_better ? blocks : pairs;
 }
 
 } // namespace cagewright

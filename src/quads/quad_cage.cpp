@@ -23,12 +23,27 @@ QuadCage::QuadCage(TriangleView mesh)
     faces.push_back(CageFace::triangle(t[0], t[1], t[2]));
   }
   replace({}, faces);
-  for (const Triangle& t : mesh.triangles) {
-    for (int i = 0; i < 3; ++i) {
-      const Index a = t[i];
-      const Index b = t[(i + 1) % 3];
-      if (face_left_of(b, a) == no_index) {
-        on_border_[a] = on_border_[b] = 1;
+  find_border();
+}
+
+QuadCage::QuadCage(const PolygonMesh& mesh)
+    : positions_(mesh.positions), around_(mesh.positions.size()),
+      on_border_(mesh.positions.size(), 0) {
+  std::vector<CageFace> faces;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const Index> v = mesh.face(f);
+    faces.push_back(v.size() == 4 ? CageFace::quad(v[0], v[1], v[2], v[3])
+                                  : CageFace::triangle(v[0], v[1], v[2]));
+  }
+  replace({}, faces);
+  find_border();
+}
+
+void QuadCage::find_border() {
+  for (const CageFace& face : faces_) {
+    for (int i = 0; i < face.size; ++i) {
+      if (face_left_of(face[i + 1], face[i]) == no_index) {
+        on_border_[face[i]] = on_border_[face[i + 1]] = 1;
         has_border_ = true;
       }
     }

@@ -61,6 +61,8 @@ struct FaceParts {
 class QuadCage {
 public:
   explicit QuadCage(TriangleView mesh);
+  /// Of triangles and quads.
+  explicit QuadCage(const PolygonMesh& mesh);
 
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
   [[nodiscard]] Index vertex_end() const { return static_cast<Index>(positions_.size()); }
@@ -93,6 +95,8 @@ public:
   [[nodiscard]] PolygonMesh to_polygons() const;
 
 private:
+  void find_border();
+
   std::vector<Vec3> positions_;
   std::vector<CageFace> faces_;
   std::vector<std::vector<Index>> around_;

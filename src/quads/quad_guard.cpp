@@ -1,5 +1,6 @@
 #include "quads/quad_guard.h"
 
+#include "core/parallel.h"
 #include "exact/predicates.h"
 
 #include <algorithm>
@@ -79,6 +80,28 @@ std::vector<Box3> face_boxes(const QuadCage& cage, std::span<const Vec3> positio
     boxes.push_back(box_of(positions, cage.face(f)));
   }
   return boxes;
+}
+
+bool loses_a_part(const ModelSurface& model, const QuadCage& cage,
+                  std::span<const Vec3> positions) {
+  std::vector<std::uint8_t> lost(model.parts.size(), 0);
+  parallel_for(0, lost.size(), 1, [&](std::size_t i) {
+    const Vec3& p = model.parts[i].point;
+    const Vec3 mirrored(-p.x(), p.y(), p.z());
+    double angle = 0;
+    for (Index f = 0; f < cage.face_end(); ++f) {
+      if (cage.has_face(f)) {
+        const FaceParts face(cage.face(f));
+        for (int k = 0; k < std::min(2, face.count); ++k) {
+          const Corners t = at(positions, face.triangles[k]);
+          angle += solid_angle(p, t);
+          angle += cage.has_border() ? solid_angle(mirrored, t) : 0;
+        }
+      }
+    }
+    lost[i] = static_cast<std::uint8_t>(angle < 2 * std::numbers::pi);
+  });
+  return std::find(lost.begin(), lost.end(), 1) != lost.end();
 }
 
 bool QuadGuard::is_clear(std::span<const Vec3> positions, const CageFace& face) const {
@@ -180,6 +203,14 @@ bool QuadGuard::is_sound(const QuadCage& cage, std::span<const Vec3> positions,
   quad.tentative = false;
   return shape_of(corners_of(positions, quad)).within(limits_) &&
          !is_crossed(cage, positions, boxes, quad, itself) && is_clear(positions, quad);
+}
+
+bool QuadGuard::may_stand(const QuadCage& cage, std::span<const Box3> boxes, Index f) const {
+  const std::vector<Vec3>& x = cage.positions();
+  const CageFace& face = cage.face(f);
+  return (!face.is_quad() || shape_of(corners_of(x, face)).within(limits_)) &&
+         keeps_halves_apart(cage, {&face, 1}) && !is_crossed(cage, x, boxes, face, f) &&
+         is_clear(x, face);
 }
 
 bool QuadGuard::keeps_halves_apart(const QuadCage& cage, std::span<const CageFace> added) {

@@ -63,6 +63,10 @@ public:
   [[nodiscard]] static bool keeps_halves_apart(const QuadCage& cage,
                                                std::span<const CageFace> added);
 
+  /// True when face f of the cage is within the limits if it is a quad, clear of the model, crosses
+  /// nothing, and keeps the halves apart.
+  [[nodiscard]] bool may_stand(const QuadCage& cage, std::span<const Box3> boxes, Index f) const;
+
   /// True when the quad is within the limits, clear of the model and crosses nothing, along either
   /// diagonal.
   [[nodiscard]] bool is_sound(const QuadCage& cage, std::span<const Vec3> positions,
@@ -75,6 +79,10 @@ private:
 };
 
 Box3 box_of(std::span<const Vec3> positions, const CageFace& face);
+
+/// True when some part of the model is outside the cage, or the whole that a half cage makes, at
+/// these positions of its vertices.
+bool loses_a_part(const ModelSurface& model, const QuadCage& cage, std::span<const Vec3> positions);
 
 /// Two faces may have one corner or one side in common, which they run along opposite ways.
 bool fit_together(const CageFace& s, const CageFace& t);

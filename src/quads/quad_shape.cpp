@@ -32,9 +32,11 @@ QuadShape shape_of(const QuadCorners& q) {
   shape.bend_degrees =
       std::max(angle_between(normal_of(q[0], q[1], q[2]), normal_of(q[0], q[2], q[3])),
                angle_between(normal_of(q[1], q[2], q[3]), normal_of(q[1], q[3], q[0])));
+  shape.quality = 1;
   shape.min_angle_degrees = 360;
   shape.max_angle_degrees = 0;
   for (int i = 0; i < 4; ++i) {
+    shape.quality = std::min(shape.quality, shape_quality({q[(i + 3) % 4], q[i], q[(i + 1) % 4]}));
     Vec3 next = q[(i + 1) % 4] - q[i];
     Vec3 last = q[(i + 3) % 4] - q[i];
     next -= next.dot(n) * n;
@@ -49,6 +51,23 @@ QuadShape shape_of(const QuadCorners& q) {
 
 QuadCorners corners_of(std::span<const Vec3> positions, const CageFace& quad) {
   return {positions[quad[0]], positions[quad[1]], positions[quad[2]], positions[quad[3]]};
+}
+
+void split_unfit(QuadCage& cage, const QuadLimits& limits) {
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    const CageFace face = cage.face(f);
+    if (face.is_quad()) {
+      const QuadCorners q = corners_of(cage.positions(), face);
+      if (face.tentative || !shape_of(q).within(limits)) {
+        const bool second =
+            !face.tentative && (q[1] - q[3]).squaredNorm() < (q[0] - q[2]).squaredNorm();
+        const int k = second ? 1 : 0;
+        cage.replace(std::array{f},
+                     std::array{CageFace::triangle(face[k], face[k + 1], face[k + 2]),
+                                CageFace::triangle(face[k], face[k + 2], face[k + 3])});
+      }
+    }
+  }
 }
 
 Vec3 area_vector(std::span<const Vec3> positions, const CageFace& face) {
@@ -71,6 +90,7 @@ double face_defect(std::span<const Vec3> positions, const CageFace& face,
   limits.max_bend_degrees += wishes.beyond;
   limits.max_angle_degrees += wishes.beyond;
   limits.min_angle_degrees -= wishes.beyond / 4;
+  limits.min_quality = wishes.beyond > 0 ? 0 : limits.min_quality;
   if (!shape.within(limits)) {
     return unfit;
   }

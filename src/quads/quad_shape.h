@@ -17,6 +17,7 @@ struct QuadLimits {
   /// Of the angles at the corners, seen along the quad's mean normal.
   double min_angle_degrees = 20;
   double max_angle_degrees = 160; ///< below 180: no concave quad
+  double min_quality = 0.03;      ///< 2 r / R of each triangle of either cutting
 };
 
 using QuadCorners = std::array<Vec3, 4>;
@@ -26,18 +27,20 @@ struct QuadShape {
   double bend_degrees = 180;      ///< the larger one of the two diagonals
   double min_angle_degrees = 0;   ///< of the corners
   double max_angle_degrees = 360; ///< above 180: concave
+  double quality = 0;             ///< 2 r / R, the least of its four triangles
 
   /// The limits widened so far that this quad is within them.
   [[nodiscard]] QuadLimits widened(QuadLimits limits) const {
     limits.max_bend_degrees = std::max(limits.max_bend_degrees, bend_degrees);
     limits.min_angle_degrees = std::min(limits.min_angle_degrees, min_angle_degrees);
     limits.max_angle_degrees = std::max(limits.max_angle_degrees, max_angle_degrees);
+    limits.min_quality = std::min(limits.min_quality, quality);
     return limits;
   }
   [[nodiscard]] bool within(const QuadLimits& limits) const {
     return bend_degrees <= limits.max_bend_degrees &&
            min_angle_degrees >= limits.min_angle_degrees &&
-           max_angle_degrees <= limits.max_angle_degrees;
+           max_angle_degrees <= limits.max_angle_degrees && quality >= limits.min_quality;
   }
 };
 
@@ -45,6 +48,9 @@ struct QuadShape {
 QuadShape shape_of(const QuadCorners& q);
 
 QuadCorners corners_of(std::span<const Vec3> positions, const CageFace& quad);
+
+/// Quads beyond the limits, and tentative ones, become two triangles each.
+void split_unfit(QuadCage& cage, const QuadLimits& limits);
 
 /// Twice the vector area of a face.
 Vec3 area_vector(std::span<const Vec3> positions, const CageFace& face);

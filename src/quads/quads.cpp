@@ -1,6 +1,7 @@
 #include "quads/quads.h"
 
 #include "mesh/measures.h"
+#include "quads/edge_loops.h"
 #include "quads/matching.h"
 #include "quads/pairing.h"
 #include "quads/relax_quads.h"
@@ -68,24 +69,6 @@ void turn_quads(QuadCage& cage) {
   cage.replace(removed, added);
 }
 
-/// Quads beyond the limits become two triangles each.
-void split_unfit(QuadCage& cage, const QuadLimits& limits) {
-  for (Index f = 0; f < cage.face_end(); ++f) {
-    const CageFace face = cage.face(f);
-    if (face.is_quad()) {
-      const QuadCorners q = corners_of(cage.positions(), face);
-      if (face.tentative || !shape_of(q).within(limits)) {
-        const bool second =
-            !face.tentative && (q[1] - q[3]).squaredNorm() < (q[0] - q[2]).squaredNorm();
-        const int k = second ? 1 : 0;
-        cage.replace(std::array{f},
-                     std::array{CageFace::triangle(face[k], face[k + 1], face[k + 2]),
-                                CageFace::triangle(face[k], face[k + 2], face[k + 3])});
-      }
-    }
-  }
-}
-
 /// Across quads from side to opposite side, until a side comes again or a face is no quad.
 std::size_t closed_strips(const PolygonMesh& mesh) {
   using Side = std::array<Index, 2>;
@@ -146,6 +129,7 @@ QuadReport report_of(const PolygonMesh& mesh) {
   const std::size_t faces = mesh.face_count();
   report.share = faces > 0 ? static_cast<double>(report.quads) / static_cast<double>(faces) : 0;
   report.rings = closed_strips(mesh);
+  report.loops = closed_loops(mesh);
   return report;
 }
 

@@ -36,6 +36,9 @@ struct QuadReport {
   /// Strips of quads, each the neighbour of the next across opposite sides, that close on
   /// themselves.
   std::size_t rings = 0;
+  /// Closed loops of edges that go straight on at every vertex, four quads meeting there: round
+  /// limbs, and round the body.
+  std::size_t loops = 0;
 };
 
 struct Quadrangulated {

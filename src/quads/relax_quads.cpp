@@ -149,10 +149,8 @@ private:
       }
       sum += share * ((t[0] - center_).dot((t[1] - center_).cross(t[2] - center_)) / 6 +
                       triangle_area(t) * gap);
-      if (parts.count == 1) {
-        const double x = shape_defect(t);
-        sum += objective_.shape_weight() * x * x;
-      }
+      const double x = counted_defect(face, t);
+      sum += part_weight(face) * x * x;
     }
     if (face.is_quad()) {
       const QuadTerms terms(corners_of(at, face), options_.free_warp);
@@ -162,6 +160,16 @@ private:
               options_.corner * terms.flat_corners() + options_.flat * terms.excess * terms.excess);
     }
     return sum;
+  }
+
+  // The square of the shape defect of a triangle, or of what it is above `free_defect` of a part of
+  // a quad, is taken times part_weight().
+  [[nodiscard]] double counted_defect(const CageFace& face, const Corners& t) const {
+    const double x = shape_defect(t);
+    return face.is_quad() ? std::max(0.0, x - options_.free_defect) : x;
+  }
+  [[nodiscard]] double part_weight(const CageFace& face) const {
+    return (face.is_quad() ? options_.slender / 2 : 1) * objective_.shape_weight();
   }
 
   [[nodiscard]] double weight_of(const CageFace& face) const {
@@ -288,18 +296,22 @@ private:
         piece.hessian[corner(k)][corner(m)] += part * terms.hessian[k][m];
       }
     }
-    const double weight = of_quad ? 0 : objective_.shape_weight();
-    const double x = shape_defect(t);
+    const double weight = part_weight(face);
+    const double x = counted_defect(face, t);
+    const double ratio = shape_defect(t) + good_shape;
     const double scaled = 4 * std::numbers::sqrt3 * area;
     std::array<Vec3, 3> slope;
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
       const int last = (k + 2) % 3;
       const Vec3 area_slope = n.cross(t[last] - t[next]) / 2;
-      slope[k] = 2 * (2 * t[k] - t[next] - t[last]) / scaled - (x + good_shape) / area * area_slope;
+      slope[k] = 2 * (2 * t[k] - t[next] - t[last]) / scaled - ratio / area * area_slope;
       piece.gradient[corner(k)] += 2 * weight * x * slope[k];
     }
-    for (int k = 0; k < 3 && weight * x > 0; ++k) {
+    if (weight * x <= 0) {
+      return;
+    }
+    for (int k = 0; k < 3; ++k) {
       for (int m = 0; m < 3; ++m) {
         const double springs = (k == m ? 2.0 : -1.0) * 2 * x / scaled;
         piece.hessian[corner(k)][corner(m)] +=
@@ -504,7 +516,7 @@ private:
     for (;;) {
       const std::vector<Index> bad = faces_in_trouble(next, changed);
       if (bad.empty()) {
-        return loses_a_part(next) ? at_ : next;
+        return loses_a_part(guard_.model(), cage_, next) ? at_ : next;
       }
       std::vector<Index> vertices;
       for (const Index f : bad) {
@@ -612,26 +624,6 @@ private:
       }
     }
     return false;
-  }
-
-  [[nodiscard]] bool loses_a_part(const Positions& next) const {
-    const std::vector<ModelSurface::Part>& parts = guard_.model().parts;
-    std::vector<std::uint8_t> lost(parts.size(), 0);
-    parallel_for(0, parts.size(), 1, [&](std::size_t i) {
-      const Vec3& p = parts[i].point;
-      const Vec3 mirrored(-p.x(), p.y(), p.z());
-      double angle = 0;
-      for (const Index f : faces_) {
-        const FaceParts face(cage_.face(f));
-        for (int k = 0; k < std::min(2, face.count); ++k) {
-          const Corners t = corners(next, face.triangles[k]);
-          angle += solid_angle(p, t);
-          angle += cage_.has_border() ? solid_angle(mirrored, t) : 0;
-        }
-      }
-      lost[i] = static_cast<std::uint8_t>(angle < 2 * std::numbers::pi);
-    });
-    return std::find(lost.begin(), lost.end(), 1) != lost.end();
   }
 
   QuadCage& cage_;

@@ -22,6 +22,8 @@ struct RelaxQuadsOptions {
   double corner = 100;    ///< for each corner, the square of what its sine is below 1/2
   double flat = 800;      ///< the square of what the warp (six volumes / l^3) is above `free_warp`
   double free_warp = 0.1; ///< that of a square bent by 24 degrees
+  double slender = 0; ///< of each cutting's triangles, the square of their shape_defect() above ...
+  double free_defect = 3; ///< ... this: that of a rectangle seven times as long as wide
   double tentative = 3;   ///< how many times as much all these count for tentative quads
 };
 
