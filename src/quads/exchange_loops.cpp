@@ -120,10 +120,13 @@ private:
     if (candidates.size() > static_cast<std::size_t>(options_.tries)) {
       candidates.erase(candidates.begin() + options_.tries, candidates.end());
     }
+    parallel_for(0, candidates.size(), 1, [&](std::size_t i) {
+      const bool is_unfit = beyond_limits(candidates[i].cage) > 0;
+      settle(candidates[i], (is_unfit ? 2 : 1) * options_.settle);
+      candidates[i].price = price(candidates[i]);
+    });
     std::optional<Candidate> best;
     for (Candidate& candidate : candidates) {
-      settle(candidate, (beyond_limits(candidate.cage) > 0 ? 2 : 1) * options_.settle);
-      candidate.price = price(candidate);
       if (!best || candidate.price < best->price) {
         best = std::move(candidate);
       }

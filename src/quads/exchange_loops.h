@@ -12,9 +12,9 @@ struct ExchangeLoopsOptions {
   std::size_t faces = 0;    ///< at most so many; 0: no limit
   RelaxQuadsOptions relax = {};
   double room = 0.012; ///< how far off the model loops are taken out, in diagonals
-  int tries = 2;       ///< of the loops that look best so many are tried
-  int settle = 4;      ///< steps after a try
-  int rounds = 6;      ///< exchanges at most
+  int tries = 3;       ///< of the loops that look best so many are tried
+  int settle = 5;      ///< steps after a try
+  int rounds = 8;      ///< exchanges at most
 };
 
 /// Takes loops out of a cage that is too large for the budget, cheapest first, and puts loops into

@@ -147,8 +147,8 @@ Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions
   loops.relax = settle;
   loops.relax.first_step = 0.05;
   // Each round takes as long as there are vertices, and more.
-  constexpr int work = 600;
-  loops.rounds = std::clamp(work / most, 1, 6);
+  constexpr int work = 800;
+  loops.rounds = std::clamp(work / most, 1, 8);
   exchange_loops(cage, guard, objective, loops, progress.part(0.3, 1));
   split_unfit(cage, options.quads.limits);
   if (progress.cancelled()) {
