@@ -4,6 +4,7 @@
 #include "mesh/measures.h"
 #include "mesh/triangulate.h"
 #include "voxel/bridge.h"
+#include "voxel/surface_patches.h"
 #include "voxel/voxel_mesh.h"
 #include "voxel/voxelize.h"
 
@@ -27,8 +28,8 @@ double unit_of(TriangleView model, const EnvelopeOptions& options) {
   return options.diagonal > 0 ? options.diagonal : diagonal(model.positions);
 }
 
-Result<VoxelGrid> voxels(TriangleView model, const EnvelopeOptions& options, int resolution,
-                         const Progress& progress) {
+Result<VoxelGrid> voxels(TriangleView model, const SurfacePatches& patches,
+                         const EnvelopeOptions& options, int resolution, const Progress& progress) {
   Box3 box = bounding_box(model.positions);
   if (options.half) {
     box.extend(Vec3(-box.min().x(), box.min().y(), box.min().z()));
@@ -41,6 +42,7 @@ Result<VoxelGrid> voxels(TriangleView model, const EnvelopeOptions& options, int
   frame.half = box.sizes() / 2;
   const double across = frame.half.maxCoeff() * 2 / diagonal * resolution;
   VoxelizeOptions voxel;
+  voxel.patches = &patches;
   voxel.resolution = std::max(2, static_cast<int>(std::lround(across)) + 1);
   const double size = 2 * frame.half.maxCoeff() / (voxel.resolution - 1);
   voxel.margin = margin_factor * options.clearance * diagonal / size;
@@ -163,9 +165,25 @@ void close_gaps(VoxelGrid& grid, double radius) {
   }
 }
 
-Result<Envelope> at_resolution(TriangleView model, const EnvelopeOptions& options, int resolution,
+// The handles of a model of one closed piece, which no grid is likely to show fewer of. Of other
+// models nothing is known: 0.
+long known_handles(const SurfacePatches& patches, std::size_t positions) {
+  if (patches.closed.size() != 1 || !patches.closed[0]) {
+    return 0;
+  }
+  std::vector<bool> used(positions, false);
+  for (const Triangle& t : patches.triangles) {
+    used[t[0]] = used[t[1]] = used[t[2]] = true;
+  }
+  const auto vertices = static_cast<long>(std::count(used.begin(), used.end(), true));
+  const auto triangles = static_cast<long>(patches.triangles.size());
+  return 1 - (vertices - triangles / 2) / 2;
+}
+
+Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches,
+                               const EnvelopeOptions& options, int resolution,
                                const Progress& progress) {
-  Result<VoxelGrid> grid = voxels(model, options, resolution, progress);
+  Result<VoxelGrid> grid = voxels(model, patches, options, resolution, progress);
   if (!grid) {
     return grid.error();
   }
@@ -216,16 +234,19 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
                                                   std::to_string(options.resolution) +
                                                   "; it must be from 2 to 4096"};
     }
-    return at_resolution(model, options, options.resolution, progress);
+    return at_resolution(model, surface_patches(model), options, options.resolution, progress);
   }
+  const SurfacePatches patches = surface_patches(model);
+  const long handles = known_handles(patches, model.positions.size());
   // A handle costs vertices and is rarely the model's own when a finer grid does not show it. Of
-  // the first few resolutions with the least genus the coarsest is taken.
+  // the first few resolutions with the least genus the coarsest is taken, or the first that shows
+  // no more handles than the model has.
   const double least = std::clamp(3.2 * std::sqrt(options.vertices), 24.0, 64.0);
   std::optional<Envelope> best;
   constexpr std::array<double, 5> factors = {1, 1.2, 1.45, 1.75, 2.1};
   for (std::size_t i = 0; i < factors.size(); ++i) {
     Result<Envelope> next = at_resolution(
-        model, options, static_cast<int>(std::lround(least * factors[i])),
+        model, patches, options, static_cast<int>(std::lround(least * factors[i])),
         progress.part(0.1 * static_cast<double>(i), 0.1 * static_cast<double>(i + 1)));
     if (!next) {
       return next;
@@ -233,7 +254,7 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
     if (!best || next->genus < best->genus) {
       best = std::move(*next);
     }
-    if (best->genus == 0) {
+    if (best->genus <= handles) {
       break;
     }
   }
@@ -245,7 +266,7 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
        i < closings.size() && vertices_for_a_handle * best->genus > options.vertices; ++i) {
     closed.closing = std::max(options.closing, closings[i]);
     Result<Envelope> next = at_resolution(
-        model, closed, static_cast<int>(std::lround(least)),
+        model, patches, closed, static_cast<int>(std::lround(least)),
         progress.part(0.5 + 0.1 * static_cast<double>(i), 0.6 + 0.1 * static_cast<double>(i)));
     if (!next) {
       return next;

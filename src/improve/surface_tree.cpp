@@ -73,7 +73,12 @@ public:
         return true;
       }
     }
-    return false;
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]); // beside the other's plane
+    const double a = n.dot(corners_[0] - t[0]);
+    const double b = n.dot(corners_[1] - t[0]);
+    const double c = n.dot(corners_[2] - t[0]);
+    const double gap = std::max(std::min({a, b, c}), -std::max({a, b, c}));
+    return gap > 0 && gap * gap > distance * distance * n.squaredNorm();
   }
 
   [[nodiscard]] std::span<const Axis> axes() const {
@@ -100,12 +105,18 @@ private:
 // A convex polygon cut by half spaces in place. Each cut adds one corner at most.
 class Clipped {
 public:
-  explicit Clipped(const Corners& t) : size_(3) { std::copy(t.begin(), t.end(), points_.begin()); }
+  explicit Clipped(const Corners& t) : size_(3) {
+    points_[0] = t[0];
+    points_[1] = t[1];
+    points_[2] = t[2];
+  }
 
   void cut(const HalfSpace& keep) {
+    std::array<double, 10> height;
     bool whole = true;
     for (int i = 0; i < size_; ++i) {
-      whole = whole && keep.above(points_[i]) <= 0;
+      height[i] = keep.above(points_[i]);
+      whole = whole && height[i] <= 0;
     }
     if (whole) {
       return;
@@ -113,15 +124,14 @@ public:
     std::array<Vec3, 10> kept;
     int count = 0;
     for (int i = 0; i < size_; ++i) {
-      const Vec3& p = points_[i];
-      const Vec3& q = points_[(i + 1) % size_];
-      const double hp = keep.above(p);
-      const double hq = keep.above(q);
+      const int next = i + 1 < size_ ? i + 1 : 0;
+      const double hp = height[i];
+      const double hq = height[next];
       if (hp <= 0) {
-        kept[count++] = p;
+        kept[count++] = points_[i];
       }
       if ((hp < 0 && hq > 0) || (hp > 0 && hq < 0)) {
-        kept[count++] = p + hp / (hp - hq) * (q - p);
+        kept[count++] = points_[i] + hp / (hp - hq) * (points_[next] - points_[i]);
       }
     }
     points_ = kept;
@@ -451,7 +461,8 @@ std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
     }
     if ((entry.child & leaf_bit) != 0) {
       const Corners& t = triangles_[entry.child & ~leaf_bit];
-      if (std::max({plane.above(t[0]), plane.above(t[1]), plane.above(t[2])}) <= least) {
+      const double top_corner = std::max({plane.above(t[0]), plane.above(t[1]), plane.above(t[2])});
+      if (top_corner <= least) {
         continue;
       }
       const bool beside = std::any_of(sides.begin(), sides.end(), [&](const HalfSpace& side) {
@@ -461,7 +472,9 @@ std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
         continue;
       }
       Clipped polygon(t);
-      polygon.cut(ceiling);
+      if (top_corner > most) {
+        polygon.cut(ceiling);
+      }
       for (const HalfSpace& side : sides) {
         polygon.cut(side);
       }
@@ -501,10 +514,14 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
     const Vec3 d = p - triangle[0];
     return Vec3(cells * to_b.dot(d), cells * to_c.dot(d), n.dot(d));
   };
+  // What is higher by less than this share of the depth would make little difference: it is looked
+  // at again when the triangle has come nearer.
+  constexpr double error = 0.03;
   // Cells in a square grid, two to a square; those beyond the diagonal can hold nothing.
   constexpr double never = std::numeric_limits<double>::infinity();
   std::array<Relief, 2 * most_cells * most_cells> best;
   std::array<double, 2 * most_cells * most_cells> heights;
+  std::array<double, 2 * most_cells * most_cells> beaten; // what is no higher is not looked for
   const auto number = [&](int i, int j, int upper) { return 2 * (i * most_cells + j) + upper; };
   heights.fill(never);
   for (int i = 0; i < cells; ++i) {
@@ -513,6 +530,7 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
       heights[number(i, j, 1)] = i + j + 1 < cells ? least : never;
     }
   }
+  beaten = heights;
   struct Range { // of squares
     int low[2];
     int high[2];
@@ -528,7 +546,7 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
   const auto wanted = [&](const Range& r, double height) {
     for (int i = r.low[0]; i <= r.high[0]; ++i) {
       for (int j = r.low[1]; j <= r.high[1]; ++j) {
-        if (heights[number(i, j, 0)] < height || heights[number(i, j, 1)] < height) {
+        if (beaten[number(i, j, 0)] < height || beaten[number(i, j, 1)] < height) {
           return true;
         }
       }
@@ -538,6 +556,7 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
   const auto offer = [&](int cell, const Vec3& p) {
     if (p.z() > heights[cell] && p.z() <= most) {
       heights[cell] = p.z();
+      beaten[cell] = p.z() + error * std::max(0.0, -p.z());
       best[cell] = {p.x() / cells, p.y() / cells, p.z()};
     }
   };
@@ -552,9 +571,11 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
     const Corners at = {flat(t[0]), flat(t[1]), flat(t[2])};
     const Vec3 low = at[0].cwiseMin(at[1]).cwiseMin(at[2]);
     const Vec3 high = at[0].cwiseMax(at[1]).cwiseMax(at[2]);
-    const bool beside =
-        high.x() < 0 || high.y() < 0 || low.x() + low.y() > cells ||
-        std::min({at[0].x() + at[0].y(), at[1].x() + at[1].y(), at[2].x() + at[2].y()}) > cells;
+    const std::array<double, 3> sums = {at[0].x() + at[0].y(), at[1].x() + at[1].y(),
+                                        at[2].x() + at[2].y()};
+    const double least_sum = std::min({sums[0], sums[1], sums[2]});
+    const double most_sum = std::max({sums[0], sums[1], sums[2]});
+    const bool beside = high.x() < 0 || high.y() < 0 || least_sum > cells;
     const Range r = to_range(low.x(), high.x(), low.y(), high.y());
     if (beside || low.z() > most || !wanted(r, high.z())) {
       return;
@@ -563,10 +584,13 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
       for (int j = r.low[1]; j <= r.high[1]; ++j) {
         for (int upper = 0; upper < 2; ++upper) {
           const int cell = number(i, j, upper);
-          if (heights[cell] >= high.z()) {
+          if (beaten[cell] >= high.z()) {
             continue;
           }
           const double sign = upper == 0 ? 1 : -1;
+          if (upper == 0 ? least_sum > i + j + 1 : most_sum < i + j + 1) {
+            continue; // beyond the diagonal
+          }
           const bool inside = high.z() <= most && in_cell(at, i, j, sign);
           if (inside) {
             for (const Vec3& p : at) {
@@ -575,7 +599,9 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
             return; // of no other
           }
           Clipped polygon(at);
-          polygon.cut({Vec3(0, 0, 1), most});
+          if (high.z() > most) {
+            polygon.cut({Vec3(0, 0, 1), most});
+          }
           polygon.cut({Vec3(-sign, 0, 0), upper == 0 ? -i : i + 1.0});
           polygon.cut({Vec3(0, -sign, 0), upper == 0 ? -j : j + 1.0});
           polygon.cut({Vec3(sign, sign, 0), sign * (i + j + 1)});

@@ -1,7 +1,6 @@
 #include "voxel/classify.h"
 
 #include "core/parallel.h"
-#include "voxel/surface_patches.h"
 
 #include <algorithm>
 #include <array>
@@ -336,12 +335,17 @@ Status classify(TriangleView mesh, VoxelGrid& grid, const Progress& progress) {
   if (progress.cancelled()) {
     return Error::cancelled();
   }
-  progress(0.5, "classifying voxels");
+  return classify(mesh, patches, grid, progress.part(0.5, 1));
+}
+
+Status classify(TriangleView mesh, const SurfacePatches& patches, VoxelGrid& grid,
+                const Progress& progress) {
+  progress(0, "classifying voxels");
   const std::vector<std::uint8_t> votes = inside_votes(mesh, patches, grid);
   if (progress.cancelled()) {
     return Error::cancelled();
   }
-  progress(0.8, "classifying voxels");
+  progress(0.6, "classifying voxels");
   Regions(grid, votes, patches.all_closed()).decide();
   if (progress.cancelled()) {
     return Error::cancelled();

@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 #include "mesh/triangle_mesh.h"
+#include "voxel/surface_patches.h"
 #include "voxel/voxel_grid.h"
 
 namespace cagewright {
@@ -32,5 +33,9 @@ namespace cagewright {
 /// Errors: cancelled. Cost: O(T + N) for T triangles and N voxels, save that crossings are sorted
 /// along each ray. The same on any number of threads.
 Status classify(TriangleView mesh, VoxelGrid& grid, const Progress& progress = {});
+
+/// The same with the mesh's patches, if they are at hand.
+Status classify(TriangleView mesh, const SurfacePatches& patches, VoxelGrid& grid,
+                const Progress& progress = {});
 
 } // namespace cagewright

@@ -140,7 +140,10 @@ Result<VoxelGrid> voxelize(TriangleView mesh, const OrientedBox& frame,
   if (progress.cancelled()) {
     return Error::cancelled();
   }
-  if (const Status status = classify(mesh, *grid, progress.part(0.5, 1)); !status) {
+  const Progress rest = progress.part(0.5, 1);
+  const Status status = options.patches != nullptr ? classify(mesh, *options.patches, *grid, rest)
+                                                   : classify(mesh, *grid, rest);
+  if (!status) {
     return status.error();
   }
   return grid;

@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "mesh/triangle_mesh.h"
 #include "obb/oriented_box.h"
+#include "voxel/surface_patches.h"
 #include "voxel/voxel_grid.h"
 
 namespace cagewright {
@@ -13,6 +14,8 @@ namespace cagewright {
 struct VoxelizeOptions {
   int resolution = 64; ///< voxels along the frame's longest edge, both ends counted; 2 to 4096
   double margin = 0;   ///< in voxels: one is feature if the surface meets it grown by this
+  /// surface_patches() of the mesh, if they are at hand; must live as long as the call.
+  const SurfacePatches* patches = nullptr;
 };
 
 /// The voxels of a mesh in a frame: feature where it touches the surface, inner or outer elsewhere
