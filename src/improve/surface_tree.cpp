@@ -514,14 +514,10 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
     const Vec3 d = p - triangle[0];
     return Vec3(cells * to_b.dot(d), cells * to_c.dot(d), n.dot(d));
   };
-  // What is higher by less than this share of the depth would make little difference: it is looked
-  // at again when the triangle has come nearer.
-  constexpr double error = 0.03;
   // Cells in a square grid, two to a square; those beyond the diagonal can hold nothing.
   constexpr double never = std::numeric_limits<double>::infinity();
   std::array<Relief, 2 * most_cells * most_cells> best;
   std::array<double, 2 * most_cells * most_cells> heights;
-  std::array<double, 2 * most_cells * most_cells> beaten; // what is no higher is not looked for
   const auto number = [&](int i, int j, int upper) { return 2 * (i * most_cells + j) + upper; };
   heights.fill(never);
   for (int i = 0; i < cells; ++i) {
@@ -530,7 +526,6 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
       heights[number(i, j, 1)] = i + j + 1 < cells ? least : never;
     }
   }
-  beaten = heights;
   struct Range { // of squares
     int low[2];
     int high[2];
@@ -546,7 +541,7 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
   const auto wanted = [&](const Range& r, double height) {
     for (int i = r.low[0]; i <= r.high[0]; ++i) {
       for (int j = r.low[1]; j <= r.high[1]; ++j) {
-        if (beaten[number(i, j, 0)] < height || beaten[number(i, j, 1)] < height) {
+        if (heights[number(i, j, 0)] < height || heights[number(i, j, 1)] < height) {
           return true;
         }
       }
@@ -556,7 +551,6 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
   const auto offer = [&](int cell, const Vec3& p) {
     if (p.z() > heights[cell] && p.z() <= most) {
       heights[cell] = p.z();
-      beaten[cell] = p.z() + error * std::max(0.0, -p.z());
       best[cell] = {p.x() / cells, p.y() / cells, p.z()};
     }
   };
@@ -584,7 +578,7 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
       for (int j = r.low[1]; j <= r.high[1]; ++j) {
         for (int upper = 0; upper < 2; ++upper) {
           const int cell = number(i, j, upper);
-          if (beaten[cell] >= high.z()) {
+          if (heights[cell] >= high.z()) {
             continue;
           }
           const double sign = upper == 0 ? 1 : -1;

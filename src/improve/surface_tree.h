@@ -83,8 +83,7 @@ public:
 
   /// The model's relief over a triangle: of the cells^2 similar triangles that it is cut into, the
   /// highest point of the model in the column of each, among heights between `least` and `most`.
-  /// Columns without one are left out. Points below the triangle may be too low by 3 % of their
-  /// depth. The triangle must have an area.
+  /// Columns without one are left out. The triangle must have an area.
   [[nodiscard]] std::vector<Relief> relief(const Corners& triangle, int cells, double least,
                                            double most) const;
 
