@@ -70,7 +70,7 @@ Result<QuadStage> quads_of_blocks(TriangleView model, const QuadOptions& quads,
 /// worth some room between cage and model, and more if too few of those faces are quads.
 double worth_of_rings(const QuadReport& pairs) {
   constexpr double enough = 0.7; // of the faces
-  return pairs.share < enough ? 4 : 1.6;
+  return pairs.share < enough ? 2 : 1.4;
 }
 
 double gap_of(const PolygonMesh& mesh, const TriangleBvh& model, double tolerance) {

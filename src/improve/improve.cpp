@@ -96,8 +96,7 @@ public:
 
 private:
   void simplify_to_budget(const Progress& progress) {
-    const double careful = options_.careful_from * static_cast<double>(budget_);
-    reduce(Placement::outside_patch, std::max(budget_, static_cast<std::size_t>(careful)),
+    reduce(Placement::outside_patch, std::max(budget_, careful_from(budget_)),
            progress.part(0, 0.2));
     reduce(Placement::clear_of_model, budget_, progress.part(0.2, 1));
     // A cage that is stuck may have grown into its own way: tightened, and with less regard to the
@@ -120,16 +119,16 @@ private:
   // Tightens the cage, and moves vertices to where they pay: splits where a new vertex helps most,
   // then collapses what costs least. \returns the objective
   double refine(const Progress& progress) {
-    double best = settle(6, progress.part(0, 0.3));
+    double best = settle(2, progress.part(0, 0.1));
     WorkingCage kept = cage_;
     std::size_t count = std::max(budget_, cage_.mesh.vertex_count());
     // Of so many vertices one is moved elsewhere in a round: many at first, and fewer whenever that
     // has gained little. Changes that do not pay together may do so one by one.
     std::size_t share = 3;
     for (int round = 0; round < options_.rounds && !progress.cancelled(); ++round) {
-      const double begin = 0.3 + 0.6 * round / options_.rounds;
+      const double begin = 0.1 + 0.8 * round / options_.rounds;
       const double value = move_vertices(std::max(fewest, count / share),
-                                         progress.part(begin, begin + 0.6 / options_.rounds));
+                                         progress.part(begin, begin + 0.8 / options_.rounds));
       const std::size_t made = cage_.mesh.vertex_count();
       const bool fewer = made < count && count > budget_;
       constexpr double worth_the_same_again = 0.998;
@@ -153,15 +152,15 @@ private:
   double move_vertices(std::size_t count, const Progress& progress) {
     split_edges(cage_, guard_, objective_, count, most_valence_);
     flip_edges(cage_, guard_, objective_, most_valence_);
-    relax_steps(2, progress.part(0, 0.2));
-    reduce(Placement::clear_of_model, budget_, progress.part(0.2, 0.4));
-    return settle(4, progress.part(0.4, 1));
+    relax_steps(1, progress.part(0, 0.1));
+    reduce(Placement::clear_of_model, budget_, progress.part(0.1, 0.6));
+    return settle(2, progress.part(0.6, 1));
   }
 
   // Tightens the cage for the last time. If too many faces are thin then, their shape is made to
   // count more until it is better. \returns the objective, as it was weighted before
   double settle_shapes(const Progress& progress) {
-    relax_steps(4, progress.part(0, 0.25));
+    relax_steps(2, progress.part(0, 0.25));
     const double weight = objective_.weights().shape;
     constexpr int attempts = 3;
     constexpr double dearer = 3;
@@ -191,8 +190,7 @@ private:
     const double guess = 1.6 * std::pow(options_.max_gap, -1.25);
     const auto coarse =
         std::clamp(static_cast<std::size_t>(guess), fewest, std::max(fewest, budget_));
-    reduce(Placement::outside_patch, static_cast<std::size_t>(options_.careful_from) * coarse,
-           progress.part(0, 0.05));
+    reduce(Placement::outside_patch, careful_from(coarse), progress.part(0, 0.05));
     reduce(Placement::clear_of_model, coarse, progress.part(0.05, 0.2));
     settle(4, progress.part(0.2, 0.3));
     constexpr int most_splits = 12;
@@ -227,6 +225,12 @@ private:
       kept = cage_;
     }
     cage_ = std::move(kept);
+  }
+
+  // With how many vertices the careful way of simplifying begins, if so many are to be left.
+  [[nodiscard]] std::size_t careful_from(std::size_t vertices) const {
+    constexpr std::size_t more = 300; // the coarser the cage, the more each collapse matters
+    return static_cast<std::size_t>(options_.careful_from * static_cast<double>(vertices)) + more;
   }
 
   [[nodiscard]] bool over_budget() const { return cage_.mesh.vertex_count() > budget_; }

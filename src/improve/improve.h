@@ -24,9 +24,9 @@ struct ImproveOptions {
   int rounds = 6;
   double square = 40;  ///< weight of large gaps: see ObjectiveWeights
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
-  /// How many times its final number of vertices the cage has when the quick way of simplifying it,
-  /// which lets it grow, gives way to the careful one.
-  double careful_from = 6;
+  /// How many times its final number of vertices, and 300 more, the cage has when the quick way of
+  /// simplifying it, which lets it grow, gives way to the careful one.
+  double careful_from = 5;
   /// Where the cage is to be finer: one weight above 0 for each vertex of the model, or empty:
   /// even. Only ratios matter. Where the weight is four times as large the edges of the cage come
   /// out about half as long (edge length ~ 1 / sqrt(density)); ratios beyond 100 count as 100. The
