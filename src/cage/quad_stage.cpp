@@ -1,5 +1,7 @@
 #include "cage/quad_stage.h"
 
+#include "mesh/measures.h"
+#include "mesh/triangulate.h"
 #include "quads/grid_quads.h"
 #include "spatial/bvh.h"
 #include "validate/greatest_gap.h"
@@ -67,10 +69,31 @@ Result<QuadStage> quads_of_blocks(TriangleView model, const QuadOptions& quads,
 }
 
 /// How many times as loose as quads made of triangles a cage of blocks may be: rings of edges are
-/// worth some room between cage and model, and more if too few of those faces are quads.
-double worth_of_rings(const QuadReport& pairs) {
+/// worth some room between cage and model.
+constexpr double worth_of_rings = 1.5;
+
+/// How many times their volume it may have. Where blocks span two limbs their faces are near the
+/// model all the same; it is the volume that shows it. It may be more if too few of the faces of
+/// pairs are quads.
+double most_volume(const QuadReport& pairs) {
   constexpr double enough = 0.7; // of the faces
-  return pairs.share < enough ? 2 : 1.4;
+  return pairs.share < enough ? 1.12 : 1.08;
+}
+
+/// Of a half: up to its plane, seen from where what closes it there has no volume.
+double volume_of(const PolygonMesh& cage, CageExtent extent) {
+  const TriangleMesh mesh = to_triangle_mesh(cage);
+  Vec3 origin = bounding_box(TriangleView(mesh)).center();
+  if (extent == CageExtent::half) {
+    origin.x() = 0;
+  }
+  double six_times = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 a = mesh.positions[t[0]] - origin;
+    const Vec3 b = mesh.positions[t[1]] - origin;
+    six_times += a.cross(b).dot(mesh.positions[t[2]] - origin);
+  }
+  return six_times / 6;
 }
 
 double gap_of(const PolygonMesh& mesh, const TriangleBvh& model, double tolerance) {
@@ -162,16 +185,20 @@ Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, Tria
   if (!pairs || !try_blocks) {
     return pairs;
   }
-  const double most =
-      worth_of_rings(pairs->made.report) * looseness(pairs->made.cage, model, quads);
+  const double most = worth_of_rings * looseness(pairs->made.cage, model, quads);
   const double loosest = pairs->report.reached ? most : 0; // 0: any
   const Result<QuadStage> blocks =
       quads_of_blocks(model, quads, budget, loosest, progress.part(paired, 1));
   if (!blocks && blocks.error().code == ErrorCode::cancelled) {
     return blocks;
   }
-  const bool is_better = blocks && blocks->report.reached &&
-                         (loosest == 0 || looseness(blocks->made.cage, model, quads) <= loosest);
+  const auto volume = [&](const QuadStage& stage) {
+    return volume_of(stage.made.cage, budget.extent);
+  };
+  const bool is_better =
+      blocks && blocks->report.reached &&
+      (loosest == 0 || (looseness(blocks->made.cage, model, quads) <= loosest &&
+                        volume(*blocks) <= most_volume(pairs->made.report) * volume(*pairs)));
   return is_better ? blocks : pairs;
 }
 
