@@ -101,10 +101,10 @@ private:
     reduce(Placement::clear_of_model, budget_, progress.part(0.2, 1));
     // A cage that is stuck may have grown into its own way: tightened, and with less regard to the
     // shape of its faces, it often goes on.
-    constexpr int attempts = 3;
+    constexpr int attempts = 4;
     for (int i = 0; i < attempts && over_budget() && !progress.cancelled(); ++i) {
       const std::size_t before = cage_.mesh.vertex_count();
-      relax_steps(4, Progress());
+      settle(4, Progress());
       most_valence_ += 2;
       limits_.worst_defect *= 2;
       limits_.least_quality = 0.035;

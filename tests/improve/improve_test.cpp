@@ -158,7 +158,7 @@ TEST(Improve, CountsFacesToo) {
 
 TEST(Improve, GivesTheSmallestCageItFindsWhenTheBudgetCannotBeMet) {
   const TriangleMesh torus = make_torus(0.3, 40, 20);
-  const Result<Improved> made = improved(torus, {.vertices = 4, .rounds = 0});
+  const Result<Improved> made = improved(torus, {.vertices = 4});
   ASSERT_TRUE(made);
   EXPECT_FALSE(made->report.reached);
   EXPECT_FALSE(made->report.why_not.empty());
