@@ -1,6 +1,7 @@
 #include "cage/budget_cage.h"
 #include "mesh/shapes.h"
 #include "mesh/triangulate.h"
+#include "support/figures.h"
 #include "validate/validate_cage.h"
 
 #include <gtest/gtest.h>
@@ -12,13 +13,7 @@
 namespace cagewright {
 namespace {
 
-TriangleMesh ellipsoid(const Vec3& center, const Vec3& half) {
-  TriangleMesh mesh = make_icosphere(2);
-  for (Vec3& p : mesh.positions) {
-    p = center + p.cwiseProduct(half);
-  }
-  return mesh;
-}
+using test::ellipsoid;
 
 /// A body with two arms, its own mirror image in the plane x = 3.
 TriangleMesh figure() {

@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace cagewright {
 namespace {
@@ -74,6 +77,63 @@ TEST(SurfaceTree, KnowsWhatIsTooNear) {
   }
   EXPECT_GT(near, 30);
   EXPECT_LT(near, 270);
+}
+
+// Each is attained, since it lies on the model, and no sample of its column is higher.
+TEST(SurfaceTree, FindsTheHighestPointOfEachColumnOfATriangle) {
+  const TriangleMesh mesh = soup(7);
+  const SurfaceTree tree(mesh);
+  Random random(8);
+  constexpr double least = -0.2;
+  constexpr double most = 10;
+  std::size_t found = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Corners t = {random_vector(random), random_vector(random), random_vector(random)};
+    const int cells = 1 + trial % SurfaceTree::most_cells;
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    const auto column = [&](double b, double c) { // and whether the column is of a cell
+      const std::array<int, 3> key = {static_cast<int>(std::floor(b * cells)),
+                                      static_cast<int>(std::floor(c * cells)),
+                                      static_cast<int>(std::floor((1 - b - c) * cells))};
+      return std::pair(key, b >= 0 && c >= 0 && b + c <= 1);
+    };
+    std::map<std::array<int, 3>, double> highest;
+    for (const SurfaceTree::Relief& top : tree.relief(t, cells, least, most)) {
+      const Vec3 p = t[0] + top.at_b * (t[1] - t[0]) + top.at_c * (t[2] - t[0]) + top.height * n;
+      EXPECT_LT(tree.nearest(p).distance, 1e-12);
+      EXPECT_GT(top.height, least);
+      ++found;
+      // Between two columns it counts for both.
+      for (const double aside_b : {-3e-9, -1e-9, 1e-9, 3e-9}) {
+        for (const double aside_c : {-3e-9, -1e-9, 1e-9, 3e-9}) {
+          double& height =
+              highest.try_emplace(column(top.at_b + aside_b, top.at_c + aside_c).first, least)
+                  .first->second;
+          height = std::max(height, top.height);
+        }
+      }
+    }
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      const Corners m = corners(mesh, f);
+      constexpr int samples = 12;
+      for (int i = 0; i <= samples; ++i) {
+        for (int j = 0; i + j <= samples; ++j) {
+          const Vec3 p = (i * m[0] + j * m[1] + (samples - i - j) * m[2]) / samples - t[0];
+          const Vec3 ab = t[1] - t[0];
+          const Vec3 ac = t[2] - t[0];
+          const double height = n.dot(p);
+          const double b = p.cross(ac).dot(n) / ab.cross(ac).dot(n);
+          const double c = ab.cross(p).dot(n) / ab.cross(ac).dot(n);
+          const auto [key, inside] = column(b, c);
+          if (inside && height > least + 1e-9) {
+            ASSERT_TRUE(highest.contains(key));
+            EXPECT_LE(height, highest[key] + 1e-9);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 60U);
 }
 
 TEST(SurfaceTree, FindsTheHighestPointBetweenThreeSides) {
