@@ -57,9 +57,9 @@ Result<Improved> within_gap(TriangleView start, TriangleView model,
 
 constexpr int voxels_for_pieces = 96; // along the longest edge, to tell which pieces are apart
 
-/// One closed surface for the whole model.
-Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& options,
-                                  const Progress& progress) {
+/// One closed surface for the whole model, from one start.
+Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptions& options,
+                                       const Progress& progress) {
   if (const Result<UnitFrame> frame = unit_frame(model); !frame) {
     return frame.error();
   }
@@ -141,6 +141,24 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
   }
   watch.lap("check");
   return made;
+}
+
+/// One closed surface for the whole model. If the envelope has more handles than the budget can go
+/// round, though it seemed enough for them, more of them are filled.
+Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& options,
+                                  const Progress& progress) {
+  constexpr double usual = 0.9; // of the time: hardly ever is there a second start
+  Result<BudgetCage> made = make_from_one_start(model, options, progress.part(0, usual));
+  const bool is_chosen = options.resolution == 0 && options.envelope_vertices == 0;
+  if (!made || made->report.reached || made->resolution == 0 || !is_chosen || options.max_gap > 0) {
+    return made;
+  }
+  BudgetCageOptions simpler = options;
+  simpler.envelope_vertices = vertices_of(options.improve) / 2;
+  Result<BudgetCage> again = make_from_one_start(model, simpler, progress.part(usual, 1));
+  const bool is_better = again && again->report.reached;
+  const bool is_cancelled = !again && again.error().code == ErrorCode::cancelled;
+  return is_better || is_cancelled ? std::move(again) : std::move(made);
 }
 
 /// Why a cage with these options is not its own mirror image, though it should be; else nothing.

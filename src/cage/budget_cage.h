@@ -36,6 +36,9 @@ struct BudgetCageOptions {
   double max_gap = 0;
   int resolution = 0; ///< of the envelope: voxels along the model's diagonal; 0: chosen
   double closing = 0; ///< of the envelope: gaps narrower than twice this are filled
+  /// How many vertices the envelope is made for: the fewer, the more of the model's handles are
+  /// filled. 0: those of the budget; and if that cannot be met, half as many.
+  int envelope_vertices = 0;
   /// Of the boxes. Their Pieces hold for both starts: with Pieces::apart each group of pieces gets
   /// a closed cage of its own, and a share of the budget by its surface area; groups whose cages
   /// would meet or lie one within another, or that are too small for the budget, are joined.

@@ -6,6 +6,10 @@
 
 namespace cagewright {
 
+int vertices_of(const ImproveOptions& budget) {
+  return budget.vertices > 0 ? budget.vertices : budget.faces > 0 ? budget.faces / 2 + 2 : 0;
+}
+
 Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOptions& options,
                                          CageExtent extent, double diagonal, BudgetCage& made,
                                          const Progress& progress) {
@@ -14,10 +18,9 @@ Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOpt
   start.resolution = options.resolution;
   start.closing = options.closing;
   start.clearance = budget.clearance;
-  // A closed surface has half as many vertices as triangles, and two more.
-  start.vertices = budget.vertices > 0 ? budget.vertices
-                   : budget.faces > 0  ? budget.faces / 2 + 2
-                                       : start.vertices;
+  for (const int vertices : {vertices_of(budget), options.envelope_vertices}) {
+    start.vertices = vertices > 0 ? vertices : start.vertices;
+  }
   start.half = extent == CageExtent::half;
   start.diagonal = diagonal;
   Result<Envelope> envelope_made = envelope(model, start, progress);

@@ -6,6 +6,10 @@
 
 namespace cagewright {
 
+/// How many vertices the budget allows: a closed surface has half as many as triangles, and two
+/// more. 0: any number.
+int vertices_of(const ImproveOptions& budget);
+
 /// The envelope that a cage with these options starts from; `made` gets what is known about it.
 ///
 /// \param extent    with half: that of the model and its mirror image in the plane x = 0

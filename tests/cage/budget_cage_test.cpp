@@ -5,6 +5,7 @@
 #include "mesh/shapes.h"
 #include "mesh/topology.h"
 #include "spatial/bvh.h"
+#include "support/models.h"
 #include "validate/cage_metrics.h"
 #include "validate/greatest_gap.h"
 #include "validate/validate_cage.h"
@@ -14,6 +15,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace cagewright {
@@ -192,6 +194,22 @@ TEST(BudgetCage, KeepsTheGapWithAFewVerticesMoreThanItMust) {
     EXPECT_GT(made->cage.positions.size(), last); // coarser where it may be
     last = made->cage.positions.size();
   }
+}
+
+// Its envelope has more handles than 100 vertices can go round, though not by much.
+TEST(BudgetCage, FillsHandlesThatItTriedInVainToGoRound) {
+  const std::optional<TriangleMesh> knot = test::real_model({"knot1.off"});
+  if (!knot) {
+    GTEST_SKIP() << "knot1.off is not there";
+  }
+  BudgetCageOptions options;
+  options.improve.vertices = 100;
+  options.improve.rounds = 0;
+  const Result<BudgetCage> made = make_budget_cage(*knot, options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(made->report.reached) << made->report.why_not;
+  EXPECT_LE(made->cage.positions.size(), 100U);
+  EXPECT_TRUE(validate_cage(made->cage, *knot)->valid());
 }
 
 TEST(BudgetCage, SaysWhereAGapCannotBeKept) {
