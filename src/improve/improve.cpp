@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace cagewright {
@@ -99,21 +100,39 @@ private:
     reduce(Placement::outside_patch, std::max(budget_, careful_from(budget_)),
            progress.part(0, 0.2));
     reduce(Placement::clear_of_model, budget_, progress.part(0.2, 1));
-    // A cage that is stuck may have grown into its own way: tightened, and with less regard to the
-    // shape of its faces, it often goes on.
-    constexpr int attempts = 4;
-    for (int i = 0; i < attempts && over_budget() && !progress.cancelled(); ++i) {
-      const std::size_t before = cage_.mesh.vertex_count();
-      settle(4, Progress());
-      most_valence_ += 2;
-      limits_.worst_defect *= 2;
-      limits_.least_quality = 0.035;
-      limits_.sharpest_bend = (limits_.sharpest_bend - 1) / 2;
-      reduce(Placement::clear_of_model, budget_, Progress());
-      if (i > 0 && cage_.mesh.vertex_count() == before) {
+    if (over_budget()) {
+      get_unstuck(progress.part(1, 1));
+    }
+  }
+
+  // A cage that is stuck may have grown into its own way: tightened, and with less regard to the
+  // shape of its faces, it often goes on; if not, it may do so with other edges.
+  void get_unstuck(const Progress& progress) {
+    const WorkingCage stuck = cage_;
+    const std::size_t most_valence = most_valence_;
+    const ShapeLimits limits = limits_;
+    std::optional<WorkingCage> smallest;
+    for (const bool with_flips : {false, true}) {
+      cage_ = stuck;
+      most_valence_ = most_valence;
+      limits_ = limits;
+      constexpr int attempts = 3;
+      for (int i = 0; i < attempts && over_budget() && !progress.cancelled(); ++i) {
+        with_flips ? settle(4, progress) : relax_steps(4, progress);
+        most_valence_ += 2;
+        limits_.worst_defect *= 2;
+        limits_.least_quality = 0.035;
+        limits_.sharpest_bend = (limits_.sharpest_bend - 1) / 2;
+        reduce(Placement::clear_of_model, budget_, progress);
+      }
+      if (!smallest || cage_.mesh.vertex_count() < smallest->mesh.vertex_count()) {
+        smallest = cage_;
+      }
+      if (!over_budget()) {
         break;
       }
     }
+    cage_ = std::move(*smallest);
   }
 
   // Tightens the cage, and moves vertices to where they pay: splits where a new vertex helps most,
