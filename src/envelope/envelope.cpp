@@ -4,6 +4,7 @@
 #include "mesh/measures.h"
 #include "mesh/triangulate.h"
 #include "voxel/bridge.h"
+#include "voxel/mirrored_grid.h"
 #include "voxel/surface_patches.h"
 #include "voxel/voxel_mesh.h"
 #include "voxel/voxelize.h"
@@ -47,30 +48,9 @@ Result<VoxelGrid> voxels(TriangleView model, const SurfacePatches& patches,
   const double size = 2 * frame.half.maxCoeff() / (voxel.resolution - 1);
   voxel.margin = margin_factor * options.clearance * diagonal / size;
   if (options.half) {
-    // So many voxels and a half on either side that the plane lies between two layers, and that the
-    // layers reach as far on one side as on the other.
-    frame.center.x() = 0;
-    const double reach = frame.half.x() / size + voxel.margin + 0.01;
-    const int layers = static_cast<int>(std::ceil(reach - 0.5));
-    const bool longest = (layers + 0.5) * size >= frame.half.maxCoeff();
-    frame.half.x() = (layers + 0.5) * size;
-    voxel.resolution = longest ? 2 * layers + 2 : voxel.resolution;
+    center_on_mirror_plane(frame, voxel);
   }
   return voxelize(model, frame, voxel, progress);
-}
-
-// Occupies the mirror images of all occupied voxels. \returns how many were added
-std::size_t mirror(VoxelGrid& grid) {
-  std::size_t added = 0;
-  for (std::size_t i = 0; i < grid.kinds.size(); ++i) {
-    const auto [x, y, z] = grid.cell(i);
-    VoxelKind& image = grid.kinds[grid.index(grid.dims[0] - 1 - x, y, z)];
-    if (grid.occupied(i) && image == VoxelKind::outer) {
-      image = grid.kinds[i];
-      ++added;
-    }
-  }
-  return added;
 }
 
 // The part at x >= 0 of a surface of voxels which the plane x = 0 does not cut through.
@@ -191,18 +171,12 @@ Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches
     close_gaps(*grid, options.closing * unit_of(model, options) / grid->size);
   }
   if (options.half) {
-    mirror(*grid);
+    mirror_occupied(*grid);
   }
   Envelope result;
   result.resolution = resolution;
   result.bridges = join_pieces(*grid);
-  std::size_t changed = 0;
-  do {
-    changed = options.half ? mirror(*grid) : 0; // neither bridges nor repairs heed the plane
-    make_well_composed(*grid);
-    changed += options.half ? mirror(*grid) : 0;
-    changed += fill_cavities(*grid);
-  } while (changed > 0);
+  make_manifold(*grid, options.half); // bridges do not heed the plane
   for (VoxelKind& kind : grid->kinds) {
     kind = kind == VoxelKind::outer ? kind : VoxelKind::feature;
   }

@@ -1,5 +1,7 @@
 #include "envelope/well_composed.h"
 
+#include "voxel/mirrored_grid.h"
+
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -122,6 +124,15 @@ std::size_t make_well_composed(VoxelGrid& grid) {
     }
   }
   return filled;
+}
+
+void make_manifold(VoxelGrid& grid, bool mirrored) {
+  std::size_t changed = 0;
+  do { // no repair heeds the plane
+    changed = mirrored ? mirror_occupied(grid) : 0;
+    changed += make_well_composed(grid);
+    changed += fill_cavities(grid);
+  } while (changed > 0);
 }
 
 } // namespace cagewright

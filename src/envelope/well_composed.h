@@ -15,4 +15,9 @@ std::size_t fill_cavities(VoxelGrid& grid);
 /// "3D Well-Composed Pictures", 1997). \returns how many
 std::size_t make_well_composed(VoxelGrid& grid);
 
+/// Both, until the surface is manifold and without cavities.
+///
+/// \param mirrored  the grid is to be its own mirror image: see mirror_occupied()
+void make_manifold(VoxelGrid& grid, bool mirrored);
+
 } // namespace cagewright

@@ -85,23 +85,6 @@ std::size_t faces_of(const VoxelGrid& cells) {
   return count;
 }
 
-/// Fills cells until the surface is manifold and without cavities; of a half, mirrored.
-void repair(VoxelGrid& cells, bool half) {
-  std::size_t changed = 0;
-  do {
-    changed = make_well_composed(cells);
-    for (std::size_t c = 0; half && c < cells.kinds.size(); ++c) {
-      const auto [i, j, k] = cells.cell(c);
-      VoxelKind& image = cells.kinds[cells.index(cells.dims[0] - 1 - i, j, k)];
-      if (cells.occupied(c) && image == VoxelKind::outer) {
-        image = VoxelKind::inner;
-        ++changed;
-      }
-    }
-    changed += fill_cavities(cells);
-  } while (changed > 0);
-}
-
 class Search {
 public:
   Search(const SolidGrid& solid, const GridLayoutOptions& options)
@@ -160,7 +143,7 @@ private:
   [[nodiscard]] GridLayout layout_of(Planes planes) const {
     GridLayout layout;
     layout.cells = cells_between(planes, solid_);
-    repair(layout.cells, options_.half);
+    make_manifold(layout.cells, options_.half);
     layout.volume = volume_of(layout.cells, planes);
     layout.vertices = vertices_of(layout.cells);
     // Of a closed surface of quads: V - F = 2 - 2 g.

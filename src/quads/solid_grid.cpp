@@ -4,10 +4,10 @@
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "voxel/bridge.h"
+#include "voxel/mirrored_grid.h"
 #include "voxel/voxelize.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace cagewright {
@@ -27,20 +27,6 @@ TriangleMesh with_image(TriangleView half) {
     std::swap(t[1], t[2]);
   }
   return joined(mesh, image);
-}
-
-/// Occupies the mirror images of all occupied voxels.
-std::size_t mirror(VoxelGrid& grid) {
-  std::size_t added = 0;
-  for (std::size_t i = 0; i < grid.kinds.size(); ++i) {
-    const auto [x, y, z] = grid.cell(i);
-    VoxelKind& image = grid.kinds[grid.index(grid.dims[0] - 1 - x, y, z)];
-    if (grid.occupied(i) && image == VoxelKind::outer) {
-      image = VoxelKind::inner;
-      ++added;
-    }
-  }
-  return added;
 }
 
 } // namespace
@@ -99,14 +85,7 @@ Result<SolidGrid> solid_grid(TriangleView model, const SolidGridOptions& options
   const double size = 2 * frame.half.maxCoeff() / (voxel.resolution - 1);
   voxel.margin = margin_factor * options.clearance / size;
   if (options.half) {
-    // So many voxels and a half on either side that the plane lies between two layers, and that the
-    // layers reach as far on one side as on the other.
-    frame.center -= frame.center.x() * Vec3::UnitX();
-    const double reach = frame.half.x() / size + voxel.margin + 0.01;
-    const int layers = static_cast<int>(std::ceil(reach - 0.5));
-    const bool longest = (layers + 0.5) * size >= frame.half.maxCoeff();
-    frame.half.x() = (layers + 0.5) * size;
-    voxel.resolution = longest ? 2 * layers + 2 : voxel.resolution;
+    center_on_mirror_plane(frame, voxel);
   }
   Result<VoxelGrid> grid = voxelize(model, frame, voxel, progress);
   if (!grid) {
@@ -115,7 +94,7 @@ Result<SolidGrid> solid_grid(TriangleView model, const SolidGridOptions& options
   std::size_t changed = 0;
   do {
     join_pieces(*grid);
-    changed = options.half ? mirror(*grid) : 0; // bridges do not heed the plane
+    changed = options.half ? mirror_occupied(*grid) : 0; // bridges do not heed the plane
     changed += fill_cavities(*grid);
   } while (changed > 0);
   return SolidGrid(std::move(*grid));

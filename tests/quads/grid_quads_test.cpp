@@ -4,6 +4,7 @@
 #include "mesh/topology.h"
 #include "quads/grid_layout.h"
 #include "spatial/bvh.h"
+#include "support/figures.h"
 #include "support/models.h"
 #include "validate/validate_cage.h"
 
@@ -16,13 +17,7 @@
 namespace cagewright {
 namespace {
 
-TriangleMesh ellipsoid(const Vec3& center, const Vec3& half) {
-  TriangleMesh mesh = make_icosphere(2);
-  for (Vec3& p : mesh.positions) {
-    p = center + p.cwiseProduct(half);
-  }
-  return mesh;
-}
+using test::ellipsoid;
 
 /// A body with four limbs, its own mirror image in the plane x = 0.
 TriangleMesh figure() {
