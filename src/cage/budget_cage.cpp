@@ -150,7 +150,7 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
   constexpr double usual = 0.9; // of the time: hardly ever is there a second start
   Result<BudgetCage> made = make_from_one_start(model, options, progress.part(0, usual));
   const bool is_chosen = options.resolution == 0 && options.envelope_vertices == 0;
-  if (!made || made->report.reached || made->resolution == 0 || !is_chosen || options.max_gap > 0) {
+  if (!made || made->report.reached || made->genus == 0 || !is_chosen || options.max_gap > 0) {
     return made;
   }
   BudgetCageOptions simpler = options;

@@ -61,6 +61,7 @@ struct BudgetCage {
   double clearance_asked = 0;
   std::size_t start_vertices = 0;
   int resolution = 0; ///< of the envelope
+  int genus = 0;      ///< of the envelope: its handles
   int bridges = 0;    ///< of the envelope: rods that join pieces of the model
   int pieces = 1;     ///< closed surfaces of the cage
   int joined = 0;     ///< groups of pieces that are apart, yet had to share a cage with others

@@ -28,6 +28,7 @@ Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOpt
     return envelope_made.error();
   }
   made.resolution = envelope_made->resolution;
+  made.genus = envelope_made->genus;
   made.bridges = envelope_made->bridges;
   made.clearance = budget.clearance;
   return std::move(envelope_made->mesh);

@@ -87,13 +87,7 @@ double volume_of(const PolygonMesh& cage, CageExtent extent) {
   if (extent == CageExtent::half) {
     origin.x() = 0;
   }
-  double six_times = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 a = mesh.positions[t[0]] - origin;
-    const Vec3 b = mesh.positions[t[1]] - origin;
-    six_times += a.cross(b).dot(mesh.positions[t[2]] - origin);
-  }
-  return six_times / 6;
+  return signed_volume(mesh, origin);
 }
 
 double gap_of(const PolygonMesh& mesh, const TriangleBvh& model, double tolerance) {
@@ -185,7 +179,12 @@ Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, Tria
   if (!pairs || !try_blocks) {
     return pairs;
   }
-  const double most = worth_of_rings * looseness(pairs->made.cage, model, quads);
+  const TriangleMesh all = with_strays(model);
+  const ModelSurface surface(all, diagonal);
+  const auto loose = [&](const QuadStage& stage) {
+    return looseness(stage.made.cage, surface, all, quads);
+  };
+  const double most = worth_of_rings * loose(*pairs);
   const double loosest = pairs->report.reached ? most : 0; // 0: any
   const Result<QuadStage> blocks =
       quads_of_blocks(model, quads, budget, loosest, progress.part(paired, 1));
@@ -197,7 +196,7 @@ Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, Tria
   };
   const bool is_better =
       blocks && blocks->report.reached &&
-      (loosest == 0 || (looseness(blocks->made.cage, model, quads) <= loosest &&
+      (loosest == 0 || (loose(*blocks) <= loosest &&
                         volume(*blocks) <= most_volume(pairs->made.report) * volume(*pairs)));
   return is_better ? blocks : pairs;
 }

@@ -34,10 +34,10 @@ double surface_area(TriangleView mesh) {
 }
 
 double signed_volume(TriangleView mesh) {
-  if (mesh.triangles.empty()) {
-    return 0;
-  }
-  const Vec3 origin = bounding_box(mesh).center();
+  return mesh.triangles.empty() ? 0 : signed_volume(mesh, bounding_box(mesh).center());
+}
+
+double signed_volume(TriangleView mesh, const Vec3& origin) {
   double six_times = 0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3 a = mesh.positions[t[0]] - origin;

@@ -24,6 +24,9 @@ double surface_area(TriangleView mesh);
 /// open mesh it depends on the origin, which is taken at the middle of the bounding box.
 double signed_volume(TriangleView mesh);
 
+/// The same about a point: that of half a closed mesh, if the point is on the plane of the cut.
+double signed_volume(TriangleView mesh, const Vec3& origin);
+
 /// Unit normal of a triangle, or zero when it has no area.
 Vec3 triangle_normal(TriangleView mesh, const Triangle& triangle);
 

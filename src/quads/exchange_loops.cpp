@@ -37,7 +37,7 @@ public:
       if (!put_in(next, 1.25)) {
         break;
       }
-      while (excess(next.cage) > 0 && take_out(next)) {
+      while (!progress.cancelled() && excess(next.cage) > 0 && take_out(next)) {
       }
       fill(next, progress);
       settle(next, 2 * options_.settle);

@@ -87,8 +87,8 @@ std::size_t faces_of(const VoxelGrid& cells) {
 
 class Search {
 public:
-  Search(const SolidGrid& solid, const GridLayoutOptions& options)
-      : solid_(solid), options_(options), middle_(solid.dims()[0] / 2) {}
+  Search(const SolidGrid& solid, const GridLayoutOptions& options, const Progress& progress)
+      : solid_(solid), options_(options), progress_(progress), middle_(solid.dims()[0] / 2) {}
 
   GridLayout run() {
     Planes planes;
@@ -99,10 +99,10 @@ public:
     }
     thin_out(planes);
     GridLayout layout = layout_of(std::move(planes));
-    while (most_ < layout.vertices && drop_one(layout)) {
+    while (!progress_.cancelled() && most_ < layout.vertices && drop_one(layout)) {
     }
     constexpr int rounds = 6;
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < rounds && !progress_.cancelled(); ++round) {
       const bool shifted = shift(layout);
       const bool exchanged = exchange(layout);
       if (!shifted && !exchanged) {
@@ -157,7 +157,8 @@ private:
   /// Drops planes by their volume alone, until there are so few that more can be asked of each.
   void thin_out(Planes& planes) const {
     const std::size_t enough = 30 + static_cast<std::size_t>(most_) / 8;
-    while (planes[0].size() + planes[1].size() + planes[2].size() > enough) {
+    while (!progress_.cancelled() &&
+           planes[0].size() + planes[1].size() + planes[2].size() > enough) {
       const VoxelGrid cells = cells_between(planes, solid_);
       double least = std::numeric_limits<double>::infinity();
       int best_axis = -1;
@@ -328,14 +329,16 @@ private:
 
   const SolidGrid& solid_;
   GridLayoutOptions options_;
+  const Progress& progress_;
   int middle_;
   std::size_t most_ = static_cast<std::size_t>(options_.vertices);
 };
 
 } // namespace
 
-GridLayout grid_layout(const SolidGrid& solid, const GridLayoutOptions& options) {
-  return Search(solid, options).run();
+GridLayout grid_layout(const SolidGrid& solid, const GridLayoutOptions& options,
+                       const Progress& progress) {
+  return Search(solid, options, progress).run();
 }
 
 PolygonMesh surface_of(const GridLayout& layout, const SolidGrid& solid, bool half) {

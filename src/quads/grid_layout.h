@@ -2,6 +2,7 @@
 /// A cage of blocks: the cells of a grid of few planes that a model touches.
 #pragma once
 
+#include "core/progress.h"
 #include "mesh/polygon_mesh.h"
 #include "quads/solid_grid.h"
 
@@ -31,7 +32,9 @@ struct GridLayout {
 /// planes each way has four sides, and every plane across it is a ring of edges round it.
 ///
 /// The surface of the filled cells is one closed manifold of quads.
-GridLayout grid_layout(const SolidGrid& solid, const GridLayoutOptions& options);
+/// When it is cancelled the layout is whatever it was by then.
+GridLayout grid_layout(const SolidGrid& solid, const GridLayoutOptions& options,
+                       const Progress& progress = {});
 
 /// The surface of the layout, outward. With `half`, the part at x >= 0: its border lies in the
 /// plane x = 0 exactly.

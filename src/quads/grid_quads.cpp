@@ -4,6 +4,7 @@
 #include "mesh/triangulate.h"
 #include "quads/exchange_loops.h"
 #include "quads/grid_layout.h"
+#include "quads/quad_weights.h"
 #include "quads/relax_quads.h"
 
 #include <Eigen/Eigenvalues>
@@ -65,7 +66,10 @@ Result<Blocks> blocks(TriangleView model, const SolidGridOptions& fine,
   if (!solid) {
     return solid.error();
   }
-  const GridLayout layout = grid_layout(*solid, coarse);
+  const GridLayout layout = grid_layout(*solid, coarse, progress);
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
   return Blocks{surface_of(layout, *solid, fine.half), layout.volume * std::pow(solid->size(), 3)};
 }
 
@@ -86,15 +90,6 @@ Result<Blocks> best_blocks(TriangleView model, const GridQuadOptions& options, d
   Result<Blocks> turned = blocks(model, fine, coarse, progress.part(0.5, 1));
   constexpr double much = 0.93;
   return turned && turned->volume < much * own->volume ? std::move(turned) : std::move(own);
-}
-
-ObjectiveWeights weights_for(TriangleView model, const QuadOptions& options, double face_area) {
-  ObjectiveWeights weights;
-  weights.square = options.square;
-  weights.shape = options.shape;
-  weights.typical_area = face_area;
-  set_emphasis(weights, model, options.density);
-  return weights;
 }
 
 bool is_valid(const QuadCage& cage, const QuadGuard& guard) {
@@ -138,7 +133,7 @@ Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions
   settle.slender = 1;
   relax_quads(cage, guard, objective, settle, progress.part(0.1, 0.3));
   if (options.loosest > 0 &&
-      looseness(cage.to_polygons(), model, options.quads) > options.loosest) {
+      looseness(cage.to_polygons(), surface, all, options.quads) > options.loosest) {
     return Error{ErrorCode::no_valid_cage, "blocks do not fit the model"};
   }
   ExchangeLoopsOptions loops;
@@ -160,10 +155,9 @@ Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions
   return result;
 }
 
-double looseness(const PolygonMesh& cage, TriangleView model, const QuadOptions& options) {
-  const TriangleMesh all = with_strays(model);
-  const ModelSurface surface(all, options.diagonal);
-  const Objective objective(surface, weights_for(all, options, 0));
+double looseness(const PolygonMesh& cage, const ModelSurface& surface, TriangleView model,
+                 const QuadOptions& options) {
+  const Objective objective(surface, weights_for(model, options, 0));
   const TriangleMesh triangles = to_triangle_mesh(cage);
   double sum = 0;
   for (const Triangle& t : triangles.triangles) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "improve/guard.h"
 #include "quads/quads.h"
 
 namespace cagewright {
@@ -28,6 +29,9 @@ Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions
 
 /// What there is between a cage and its model: the integral over the faces, cut as they are
 /// written, of d + square d^2 / D, d the distance to the model and D its diagonal.
-double looseness(const PolygonMesh& cage, TriangleView model, const QuadOptions& options);
+///
+/// \param surface  of the model, which has its strays: see with_strays()
+double looseness(const PolygonMesh& cage, const ModelSurface& surface, TriangleView model,
+                 const QuadOptions& options);
 
 } // namespace cagewright

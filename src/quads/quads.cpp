@@ -4,6 +4,7 @@
 #include "quads/edge_loops.h"
 #include "quads/matching.h"
 #include "quads/pairing.h"
+#include "quads/quad_weights.h"
 #include "quads/relax_quads.h"
 #include "quads/retile.h"
 
@@ -12,15 +13,6 @@
 
 namespace cagewright {
 namespace {
-
-ObjectiveWeights weights_for(TriangleView cage, TriangleView model, const QuadOptions& options) {
-  ObjectiveWeights weights;
-  weights.square = options.square;
-  weights.shape = options.shape;
-  weights.typical_area = surface_area(cage) / static_cast<double>(cage.triangles.size());
-  set_emphasis(weights, model, options.density);
-  return weights;
-}
 
 TriangleMesh cut(const QuadCage& cage) {
   TriangleMesh mesh{cage.positions(), {}};
@@ -154,7 +146,8 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   const TriangleMesh all = with_strays(model);
   const ModelSurface surface(all, options.diagonal);
   const double clearance = options.clearance * surface.diagonal;
-  const Objective objective(surface, weights_for(start, all, options));
+  const double face_area = surface_area(start) / static_cast<double>(start.triangles.size());
+  const Objective objective(surface, weights_for(all, options, face_area));
   RelaxQuadsOptions make_room;
   make_room.steps = 3;
   make_room.keep = options.clearance + options.room;
