@@ -13,14 +13,15 @@ using Vector = Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr int most_iterations = 25;
-constexpr double accuracy = 1e-4; // of the complementarity, relative to its start
 
 class InteriorPoint {
 public:
   InteriorPoint(const BlockQuadratic& quadratic, std::span<const BlockConstraint> constraints,
-                double slack)
-      : quadratic_(quadratic), constraints_(constraints), slack_(slack),
+                const BlockProgramOptions& options)
+      : quadratic_(quadratic), constraints_(constraints), slack_(options.slack),
+        accuracy_(options.accuracy),
         size_(static_cast<Eigen::Index>(3 * quadratic.gradient.size())) {
+    find_groups();
     lay_out();
     hessian_ = assemble({});
     gradient_.resize(size_);
@@ -36,19 +37,22 @@ public:
     for (Eigen::Index k = 0; k < count; ++k) {
       bound[k] = constraints_[k].bound;
     }
-    // Slacks as they are, but off the boundary; multipliers that make all products equal.
+    // Slacks as they are, but well off the boundary, and multipliers rather too large than too
+    // small: from near the boundary steps are short, and too small a multiplier grows slowly.
     const double typical = std::max(1e-12, bound.cwiseAbs().sum() / static_cast<double>(count + 1));
-    Vector s = (-bound).cwiseMax(0.1 * typical);
-    constexpr double least_multiplier = 0.01;
-    Vector z = Vector::Constant(count, std::max(least_multiplier, gradient_.cwiseAbs().mean()));
-    const double start = count > 0 ? s.dot(z) / static_cast<double>(count) : 0;
+    Vector s = (-bound).cwiseMax(typical / 2);
+    Vector z = Vector::Constant(count, 10 * typical_multiplier(bound));
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-      const Vector dual = times_hessian(x) + gradient_ - transposed(z);
+      const Vector hx = times_hessian(x);
+      const Vector dual = hx + gradient_ - transposed(z);
       const Vector primal = times(x) - bound + slack_ * z - s;
-      const double mu = count > 0 ? s.dot(z) / static_cast<double>(count) : 0;
-      if (mu <= accuracy * start &&
-          primal.cwiseAbs().sum() <= 1e-4 * typical * static_cast<double>(count) &&
-          dual.cwiseAbs().maxCoeff() <= 1e-6 * (1 + gradient_.cwiseAbs().maxCoeff())) {
+      const double gap = s.dot(z);
+      const double mu = count > 0 ? gap / static_cast<double>(count) : 0;
+      const double value = std::abs(gradient_.dot(x)) + x.dot(hx) + slack_ * z.squaredNorm();
+      const bool is_feasible =
+          count == 0 || primal.cwiseAbs().maxCoeff() <= accuracy_ / 2 * typical;
+      if (iteration > 0 && is_feasible && dual.cwiseAbs().dot(x.cwiseAbs()) <= accuracy_ * value &&
+          gap <= accuracy_ * value) {
         return x;
       }
       const Vector scale = s + slack_ * z;
@@ -97,6 +101,15 @@ private:
     Eigen::SimplicialLDLT<Sparse, Eigen::Lower> llt_;
   };
 
+  // Of what pulls at x, and of what it takes to push x as far as the worst constraint asks.
+  [[nodiscard]] double typical_multiplier(const Vector& bound) const {
+    constexpr double least = 0.01;
+    const double pull = gradient_.size() > 0 ? gradient_.cwiseAbs().mean() : 0;
+    const double push =
+        bound.size() > 0 ? std::max(0.0, bound.maxCoeff()) * hessian_.diagonal().mean() : 0;
+    return std::max({least, pull, push});
+  }
+
   // The greatest step in [0, 1] that keeps all of v + step * d at or above zero.
   static double longest(const Vector& v, const Vector& d) {
     double step = 1;
@@ -106,6 +119,31 @@ private:
       }
     }
     return step;
+  }
+
+  // Consecutive constraints over the same vertices in the same direction: they see the vertices'
+  // heights in that direction only, and are worked through with numbers instead of vectors.
+  struct Group {
+    std::size_t first = 0;
+    std::size_t end = 0;
+    int corners = 3; // with weights
+  };
+
+  void find_groups() {
+    for (std::size_t k = 0; k < constraints_.size(); ++k) {
+      const BlockConstraint& c = constraints_[k];
+      const bool same = k > 0 && c.vertex == constraints_[k - 1].vertex &&
+                        c.direction == constraints_[k - 1].direction &&
+                        c.fourth_vertex == constraints_[k - 1].fourth_vertex;
+      if (!same) {
+        groups_.push_back({k, k, 0});
+      }
+      Group& group = groups_.back();
+      group.end = k + 1;
+      for (int i = group.corners; i < c.size(); ++i) {
+        group.corners = c.weight_of(i) != 0 ? i + 1 : group.corners;
+      }
+    }
   }
 
   // The blocks on and below the diagonal that are not zero, and where each goes.
@@ -123,15 +161,25 @@ private:
       all.push_back({row, column});
       return of_row[row].back();
     };
+    std::vector<Index> term_block;
     for (const BlockQuadratic::Term& t : quadratic_.terms) {
-      term_block_.push_back(at(std::max(t.row, t.column), std::min(t.row, t.column)));
+      term_block.push_back(at(std::max(t.row, t.column), std::min(t.row, t.column)));
     }
-    for (const BlockConstraint& c : constraints_) {
-      for_pairs(c, [&](int i, int j) {
-        constraint_block_.push_back(at(c.vertex_of(i), c.vertex_of(j)));
+    for (const Group& group : groups_) {
+      for_pairs(group, [&](int i, int j) {
+        const BlockConstraint& c = constraints_[group.first];
+        pair_block_.push_back(at(c.vertex_of(i), c.vertex_of(j)));
       });
     }
-    blocks_.resize(all.size());
+    terms_.resize(all.size(), Mat3::Zero());
+    for (std::size_t k = 0; k < term_block.size(); ++k) {
+      const BlockQuadratic::Term& t = quadratic_.terms[k];
+      if (t.row >= t.column) {
+        terms_[term_block[k]] += t.block;
+      } else {
+        terms_[term_block[k]] += t.block.transpose();
+      }
+    }
     std::vector<Eigen::Triplet<double>> entries;
     for (const auto& [row, column] : all) {
       for (int i = 0; i < 3; ++i) {
@@ -154,12 +202,12 @@ private:
     }
   }
 
-  // Calls with the pairs (i, j) of a constraint's corners that make blocks on or below the
-  // diagonal.
-  template <class Visit> static void for_pairs(const BlockConstraint& c, const Visit& visit) {
-    for (int i = 0; i < c.size(); ++i) {
-      for (int j = 0; j < c.size(); ++j) {
-        if (c.weight_of(i) != 0 && c.weight_of(j) != 0 && c.vertex_of(i) >= c.vertex_of(j)) {
+  // Calls with the pairs (i, j) of a group's corners that make blocks on or below the diagonal.
+  template <class Visit> void for_pairs(const Group& group, const Visit& visit) const {
+    const BlockConstraint& c = constraints_[group.first];
+    for (int i = 0; i < group.corners; ++i) {
+      for (int j = 0; j < group.corners; ++j) {
+        if (c.vertex_of(i) >= c.vertex_of(j)) {
           visit(i, j);
         }
       }
@@ -168,21 +216,23 @@ private:
 
   // Lower triangle of the Hessian plus the constraints' outer products, weighted.
   const Sparse& assemble(const Vector& weights) {
-    std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero());
-    for (std::size_t k = 0; k < quadratic_.terms.size(); ++k) {
-      const BlockQuadratic::Term& t = quadratic_.terms[k];
-      if (t.row >= t.column) {
-        blocks_[term_block_[k]] += t.block;
-      } else {
-        blocks_[term_block_[k]] += t.block.transpose();
+    blocks_ = terms_;
+    auto block = pair_block_.begin();
+    for (const Group& group :
+         weights.size() > 0 ? std::span<const Group>(groups_) : std::span<const Group>()) {
+      double products[4][4] = {};
+      for (std::size_t k = group.first; k < group.end; ++k) {
+        const BlockConstraint& c = constraints_[k];
+        for (int i = 0; i < group.corners; ++i) {
+          const double weighted = weights[static_cast<Eigen::Index>(k)] * c.weight_of(i);
+          for (int j = 0; j < group.corners; ++j) {
+            products[i][j] += weighted * c.weight_of(j);
+          }
+        }
       }
-    }
-    auto block = constraint_block_.begin();
-    for (Eigen::Index k = 0; k < weights.size(); ++k) {
-      const BlockConstraint& c = constraints_[k];
-      const Mat3 outer = weights[k] * c.direction * c.direction.transpose();
-      for_pairs(
-          c, [&](int i, int j) { blocks_[*block++] += c.weight_of(i) * c.weight_of(j) * outer; });
+      const Vec3& direction = constraints_[group.first].direction;
+      const Mat3 outer = direction * direction.transpose();
+      for_pairs(group, [&](int i, int j) { blocks_[*block++] += products[i][j] * outer; });
     }
     auto slot = slot_.begin();
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
@@ -201,25 +251,37 @@ private:
 
   [[nodiscard]] Vector times(const Vector& x) const {
     Vector result(static_cast<Eigen::Index>(constraints_.size()));
-    for (std::size_t k = 0; k < constraints_.size(); ++k) {
-      const BlockConstraint& c = constraints_[k];
-      double sum = 0;
-      for (int i = 0; i < c.size(); ++i) {
-        sum += c.weight_of(i) *
-               c.direction.dot(x.segment<3>(static_cast<Eigen::Index>(3) * c.vertex_of(i)));
+    for (const Group& group : groups_) {
+      const BlockConstraint& first = constraints_[group.first];
+      double height[4] = {};
+      for (int i = 0; i < group.corners; ++i) {
+        height[i] =
+            first.direction.dot(x.segment<3>(static_cast<Eigen::Index>(3) * first.vertex_of(i)));
       }
-      result[static_cast<Eigen::Index>(k)] = sum;
+      for (std::size_t k = group.first; k < group.end; ++k) {
+        double sum = 0;
+        for (int i = 0; i < group.corners; ++i) {
+          sum += constraints_[k].weight_of(i) * height[i];
+        }
+        result[static_cast<Eigen::Index>(k)] = sum;
+      }
     }
     return result;
   }
 
   [[nodiscard]] Vector transposed(const Vector& z) const {
     Vector result = Vector::Zero(size_);
-    for (std::size_t k = 0; k < constraints_.size(); ++k) {
-      const BlockConstraint& c = constraints_[k];
-      for (int i = 0; i < c.size(); ++i) {
-        result.segment<3>(static_cast<Eigen::Index>(3) * c.vertex_of(i)) +=
-            z[static_cast<Eigen::Index>(k)] * c.weight_of(i) * c.direction;
+    for (const Group& group : groups_) {
+      double sum[4] = {};
+      for (std::size_t k = group.first; k < group.end; ++k) {
+        for (int i = 0; i < group.corners; ++i) {
+          sum[i] += z[static_cast<Eigen::Index>(k)] * constraints_[k].weight_of(i);
+        }
+      }
+      const BlockConstraint& first = constraints_[group.first];
+      for (int i = 0; i < group.corners; ++i) {
+        result.segment<3>(static_cast<Eigen::Index>(3) * first.vertex_of(i)) +=
+            sum[i] * first.direction;
       }
     }
     return result;
@@ -228,14 +290,16 @@ private:
   const BlockQuadratic& quadratic_;
   std::span<const BlockConstraint> constraints_;
   double slack_;
+  double accuracy_;
   Eigen::Index size_;
   Sparse hessian_;
   Sparse matrix_; // of the Newton steps, made anew for each
-  std::vector<Mat3> blocks_;
+  std::vector<Group> groups_;
+  std::vector<Mat3> terms_;  // of the quadratic, by block
+  std::vector<Mat3> blocks_; // the same and the constraints
   std::vector<bool> is_diagonal_;
-  std::vector<double*> slot_; // in matrix_, for the entries of the blocks in turn
-  std::vector<Index> term_block_;
-  std::vector<Index> constraint_block_;
+  std::vector<double*> slot_;     // in matrix_, for the entries of the blocks in turn
+  std::vector<Index> pair_block_; // of the groups' pairs in turn
   Vector gradient_;
   Factor factor_;
 };
@@ -243,8 +307,9 @@ private:
 } // namespace
 
 std::vector<Vec3> minimize(const BlockQuadratic& quadratic,
-                           std::span<const BlockConstraint> constraints, double slack) {
-  const Vector x = InteriorPoint(quadratic, constraints, slack).solve();
+                           std::span<const BlockConstraint> constraints,
+                           const BlockProgramOptions& options) {
+  const Vector x = InteriorPoint(quadratic, constraints, options).solve();
   std::vector<Vec3> result(quadratic.gradient.size());
   for (std::size_t v = 0; v < result.size(); ++v) {
     result[v] = x.segment<3>(static_cast<Eigen::Index>(3 * v));

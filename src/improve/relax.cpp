@@ -147,7 +147,7 @@ private:
     }
     // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
     const double slack = towards_goal ? 1e-6 : 0.05 * guard_.clearance() / unit;
-    const std::vector<Vec3> step = minimize(quadratic, constraints, slack);
+    const std::vector<Vec3> step = minimize(quadratic, constraints, {.slack = slack});
     Positions result = at;
     for (Index v = 0; v < living_.size(); ++v) {
       Vec3& p = result[living_[v]];

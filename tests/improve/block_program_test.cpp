@@ -7,6 +7,8 @@
 namespace cagewright {
 namespace {
 
+constexpr BlockProgramOptions exact = {.slack = 1e-9, .accuracy = 1e-8};
+
 // Points on a chain, each tied to its place and to the next point, in random directions.
 BlockQuadratic random_chain(Random& random, Index count) {
   BlockQuadratic quadratic(count);
@@ -41,7 +43,7 @@ std::vector<Vec3> slope(const BlockQuadratic& quadratic, const std::vector<Vec3>
 TEST(BlockProgram, WithoutConstraintsTheSlopeVanishes) {
   Random random(1);
   const BlockQuadratic quadratic = random_chain(random, 20);
-  const std::vector<Vec3> x = minimize(quadratic, {}, 1e-9);
+  const std::vector<Vec3> x = minimize(quadratic, {}, exact);
   for (const Vec3& g : slope(quadratic, x)) {
     EXPECT_LT(g.norm(), 1e-6);
   }
@@ -57,7 +59,7 @@ TEST(BlockProgram, TheSlopeIsMadeOfActiveConstraints) {
           Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
       constraints.push_back({{v, v + 1, v + 2}, {0.5, 0.3, 0.2}, d, random.uniform(-0.3, 0.1)});
     }
-    const std::vector<Vec3> x = minimize(quadratic, constraints, 1e-9);
+    const std::vector<Vec3> x = minimize(quadratic, constraints, exact);
     double best = 0;
     for (Index v = 0; v < 12; ++v) {
       best += quadratic.gradient[v].dot(x[v]);
@@ -101,7 +103,7 @@ TEST(BlockProgram, ComesAsNearAsItCanToConstraintsThatContradict) {
   quadratic.terms.push_back({0, 0, Mat3::Identity()});
   const std::vector<BlockConstraint> constraints = {{{0, 0, 0}, {1, 0, 0}, Vec3::UnitX(), 1},
                                                     {{0, 0, 0}, {1, 0, 0}, -Vec3::UnitX(), 1}};
-  const std::vector<Vec3> x = minimize(quadratic, constraints, 1e-6);
+  const std::vector<Vec3> x = minimize(quadratic, constraints, {.slack = 1e-6, .accuracy = 1e-8});
   EXPECT_NEAR(x[0].x(), 0, 1e-3); // 1 <= x <= -1
 }
 
