@@ -164,7 +164,96 @@ private:
       }
       share *= pays ? 1 : 2;
     }
+    if (!over_budget()) {
+      blunt_tips(best, progress.part(0.8, 0.9));
+    }
     return settle_shapes(progress.part(0.9, 1));
+  }
+
+  // The objective hardly feels a thin spike, but users see it first. Tips that stand off the model
+  // far more than the rest of the cage are split, and vertices elsewhere are given for that, as
+  // long as it costs little.
+  void blunt_tips(double value, const Progress& progress) {
+    constexpr int attempts = 4;
+    constexpr int patience = 2;
+    int in_vain = 0;
+    std::vector<Index> tried;
+    for (int i = 0; i < attempts && in_vain < patience && !progress.cancelled(); ++i) {
+      const std::optional<Tip> tip = farthest_tip(tried);
+      if (!tip) {
+        break;
+      }
+      tried.push_back(tip->vertex);
+      const WorkingCage kept = cage_;
+      double after = value;
+      constexpr double nearer = 0.9;
+      bool better = split_tip(cage_, guard_, objective_, tip->vertex, most_valence_) &&
+                    distance_of(tip->vertex) < nearer * tip->distance;
+      if (better) {
+        constexpr double shorter = 0.75;
+        objective_.limit_gap(std::max(shorter * tip->distance, farthest()));
+        reduce(Placement::clear_of_model, budget_, progress);
+        after = settle(2, progress);
+        const bool much_nearer = farthest() < nearer * tip->distance;
+        better = !over_budget() && after < value + (much_nearer ? tip->worth : 0);
+      }
+      if (better) {
+        value = after;
+      } else {
+        cage_ = kept;
+        ++in_vain;
+      }
+    }
+    objective_.limit_gap(std::numeric_limits<double>::infinity());
+  }
+
+  struct Tip {
+    Index vertex = 0;
+    double distance = 0; // from the model
+    double worth = 0;    // what the objective may grow by if it gets much nearer
+  };
+
+  // The vertex farthest from the model of those not tried, if it is far.
+  [[nodiscard]] std::optional<Tip> farthest_tip(const std::vector<Index>& tried) const {
+    constexpr double far = 5;      // times the mean
+    constexpr double worth = 0.02; // of what there is between cage and model
+    const CageMesh& mesh = cage_.mesh;
+    double area = 0;
+    double sum = 0;
+    Tip tip;
+    for (Index f = 0; f < mesh.face_end(); ++f) {
+      if (mesh.has_face(f)) {
+        const Corners t = corners_of(mesh, f);
+        area += triangle_area(t);
+        sum += triangle_area(t) * objective_.nearest((t[0] + t[1] + t[2]) / 3).distance;
+        tip.worth += worth * objective_.face(t);
+      }
+    }
+    for (Index v = 0; v < mesh.vertex_end(); ++v) {
+      if (mesh.has_vertex(v) && std::find(tried.begin(), tried.end(), v) == tried.end()) {
+        const double d = distance_of(v);
+        if (d > tip.distance) {
+          tip.vertex = v;
+          tip.distance = d;
+        }
+      }
+    }
+    return tip.distance * area > far * sum ? std::optional(tip) : std::nullopt;
+  }
+
+  // The greatest distance of a vertex from the model.
+  [[nodiscard]] double farthest() const {
+    double most = 0;
+    for (Index v = 0; v < cage_.mesh.vertex_end(); ++v) {
+      if (cage_.mesh.has_vertex(v)) {
+        most = std::max(most, distance_of(v));
+      }
+    }
+    return most;
+  }
+
+  [[nodiscard]] double distance_of(Index v) const {
+    return objective_.nearest(cage_.mesh.position(v)).distance;
   }
 
   // Splits edges, and collapses as many.

@@ -2,9 +2,11 @@
 
 #include "core/parallel.h"
 #include "improve/placement.h"
+#include "improve/relax.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -140,6 +142,34 @@ std::optional<Change> placed_split(const CageMesh& mesh, const Guard& guard,
   return Change{gain, std::move(patch), edge};
 }
 
+// The cage with the edge split near the tip, and the new vertex, the tip, and their neighbours
+// where they are best.
+std::optional<WorkingCage> with_split_tip(const WorkingCage& cage, const Guard& guard,
+                                          const Objective& objective, const Edge& edge,
+                                          std::size_t most_valence) {
+  const auto& [tip, end] = edge;
+  Patch patch = cage.mesh.split(tip, end);
+  patch.position = 0.6 * cage.mesh.position(tip) + 0.4 * cage.mesh.position(end);
+  if (!leaves_valence(cage.mesh, patch.removed, tip, end, most_valence) ||
+      !keeps_shape(cage.mesh, patch) || guard.too_near(cage.mesh, patch) ||
+      guard.crosses(cage.mesh, cage.boxes, patch)) {
+    return std::nullopt;
+  }
+  WorkingCage made = cage;
+  const Index middle = made.mesh.vertex_end();
+  made.apply(patch);
+  std::vector<Index> movable = made.mesh.neighbors(tip);
+  for (const Index v : made.mesh.neighbors(middle)) {
+    movable.push_back(v);
+  }
+  std::sort(movable.begin(), movable.end());
+  movable.erase(std::unique(movable.begin(), movable.end()), movable.end());
+  constexpr int steps = 6;
+  relax(made, guard, objective, {.steps = steps, .movable = movable});
+  made.reach = cage.reach;
+  return made;
+}
+
 } // namespace
 
 std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
@@ -233,6 +263,23 @@ std::size_t split_far_faces(WorkingCage& cage, const Guard& guard, const Objecti
   });
   make(cage, guard, changes, edges.size());
   return far;
+}
+
+bool split_tip(WorkingCage& cage, const Guard& guard, const Objective& objective, Index tip,
+               std::size_t most_valence) {
+  const std::vector<Index> ends = cage.mesh.neighbors(tip);
+  std::vector<std::optional<WorkingCage>> made(ends.size());
+  std::vector<double> values(ends.size());
+  parallel_for(0, ends.size(), 1, [&](std::size_t i) {
+    made[i] = with_split_tip(cage, guard, objective, {tip, ends[i]}, most_valence);
+    values[i] = made[i] ? objective.total(made[i]->mesh) : std::numeric_limits<double>::infinity();
+  });
+  const auto best = std::min_element(values.begin(), values.end()) - values.begin();
+  if (ends.empty() || !made[best]) {
+    return false;
+  }
+  cage = std::move(*made[best]);
+  return true;
 }
 
 } // namespace cagewright

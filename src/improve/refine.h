@@ -17,9 +17,16 @@ std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& 
                         std::size_t count, std::size_t most_valence);
 
 /// Splits edges of faces that are farther from the model than `limit` at any of the samples of
-/// Objective::sampled_gap(), where it lowers the objective most, but none of neighbours. The cage stays valid
-/// throughout. \returns how many such faces there were
+/// Objective::sampled_gap(), where it lowers the objective most, but none of neighbours. The cage
+/// stays valid throughout. \returns how many such faces there were
 std::size_t split_far_faces(WorkingCage& cage, const Guard& guard, const Objective& objective,
                             double limit, std::size_t most_valence);
+
+/// Splits an edge at the vertex `tip` where it lowers the objective most once both ends and what is
+/// round them have moved: what a tip of the cage that stands far off the model needs, because no
+/// split alone lowers the objective there. The cage stays valid throughout. \returns whether there
+/// was one
+bool split_tip(WorkingCage& cage, const Guard& guard, const Objective& objective, Index tip,
+               std::size_t most_valence);
 
 } // namespace cagewright

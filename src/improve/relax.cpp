@@ -22,19 +22,21 @@ using Positions = std::vector<Vec3>;
 
 class Relaxation {
 public:
-  Relaxation(WorkingCage& cage, const Guard& guard, const Objective& objective)
-      : cage_(cage), guard_(guard), objective_(objective), at_(cage.mesh.vertex_end()) {
+  Relaxation(WorkingCage& cage, const Guard& guard, const Objective& objective,
+             std::span<const Index> movable)
+      : cage_(cage), guard_(guard), objective_(objective), at_(cage.mesh.vertex_end()),
+        number_(cage.mesh.vertex_end(), no_index), moving_(movable.begin(), movable.end()) {
     for (Index v = 0; v < cage.mesh.vertex_end(); ++v) {
       at_[v] = cage.mesh.position(v);
-      if (cage.mesh.has_vertex(v)) {
-        number_.push_back(static_cast<Index>(living_.size()));
-        living_.push_back(v);
-      } else {
-        number_.push_back(no_index);
+      if (movable.empty() && cage.mesh.has_vertex(v)) {
+        moving_.push_back(v);
       }
     }
+    for (Index i = 0; i < moving_.size(); ++i) {
+      number_[moving_[i]] = i;
+    }
     for (Index f = 0; f < cage.mesh.face_end(); ++f) {
-      if (cage.mesh.has_face(f)) {
+      if (cage.mesh.has_face(f) && moves(cage.mesh.face(f))) {
         faces_.push_back(f);
       }
     }
@@ -72,6 +74,10 @@ public:
   }
 
 private:
+  [[nodiscard]] bool moves(const Triangle& t) const {
+    return std::any_of(t.begin(), t.end(), [&](Index v) { return number_[v] != no_index; });
+  }
+
   [[nodiscard]] Corners corners(const Positions& at, Index f) const {
     const Triangle& t = cage_.mesh.face(f);
     return {at[t[0]], at[t[1]], at[t[2]]};
@@ -107,30 +113,38 @@ private:
         piece.terms = terms_of(t);
       }
     });
-    BlockQuadratic quadratic(living_.size());
+    BlockQuadratic quadratic(moving_.size());
     std::vector<BlockConstraint> constraints;
     // The program is scaled to lengths of the diagonal and to gradients near one.
     const double unit = objective_.diagonal();
-    const double scale = static_cast<double>(faces_.size()) /
+    const double scale = static_cast<double>(cage_.mesh.face_count()) /
                          (objective_.weights().typical_emphasis * unit * unit * unit);
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const Triangle& t = cage_.mesh.face(faces_[i]);
       for (BlockConstraint c : pieces[i].constraints) {
         c.bound /= unit;
-        constraints.push_back(c);
+        if (fix_corners(c)) {
+          constraints.push_back(c);
+        }
       }
       for (int k = 0; k < 3; ++k) {
-        quadratic.gradient[number_[t[k]]] += scale * unit * pieces[i].terms.gradient[k];
+        const Index row = number_[t[k]];
+        if (row == no_index) {
+          continue;
+        }
+        quadratic.gradient[row] += scale * unit * pieces[i].terms.gradient[k];
         for (int m = 0; m <= k; ++m) {
-          quadratic.terms.push_back(
-              {number_[t[k]], number_[t[m]], scale * unit * unit * pieces[i].terms.hessian[k][m]});
+          if (number_[t[m]] != no_index) {
+            quadratic.terms.push_back(
+                {row, number_[t[m]], scale * unit * unit * pieces[i].terms.hessian[k][m]});
+          }
         }
       }
     }
-    for (Index v = 0; v < living_.size(); ++v) {
+    for (Index v = 0; v < moving_.size(); ++v) {
       // Directions in which nothing changes are held by a weak spring.
       quadratic.terms.push_back({v, v, (towards_goal ? 2.0 : 50.0) * Mat3::Identity()});
-      const bool on_plane = cage_.mesh.on_plane(living_[v]);
+      const bool on_plane = cage_.mesh.on_plane(moving_[v]);
       if (on_plane) { // held as by a wall
         constexpr double wall = 1e6;
         quadratic.terms.push_back({v, v, Vec3(wall, 0, 0).asDiagonal()});
@@ -139,7 +153,7 @@ private:
       for (int k = on_plane ? 1 : 0; k < 3; ++k) {
         const bool near_plane = k == 0 && cage_.mesh.is_half();
         const double down =
-            near_plane ? std::min(reach, at[living_[v]].x() - plane_gap * guard_.clearance())
+            near_plane ? std::min(reach, at[moving_[v]].x() - plane_gap * guard_.clearance())
                        : reach;
         constraints.push_back({{v, v, v}, {1, 0, 0}, Vec3::Unit(k), -down / unit});
         constraints.push_back({{v, v, v}, {1, 0, 0}, -Vec3::Unit(k), -reach / unit});
@@ -149,12 +163,12 @@ private:
     const double slack = towards_goal ? 1e-6 : 0.05 * guard_.clearance() / unit;
     const std::vector<Vec3> step = minimize(quadratic, constraints, {.slack = slack});
     Positions result = at;
-    for (Index v = 0; v < living_.size(); ++v) {
-      Vec3& p = result[living_[v]];
+    for (Index v = 0; v < moving_.size(); ++v) {
+      Vec3& p = result[moving_[v]];
       const double off_plane = plane_gap / 2 * guard_.clearance();
       const double before = p.x();
       p += unit * step[v];
-      if (cage_.mesh.on_plane(living_[v])) {
+      if (cage_.mesh.on_plane(moving_[v])) {
         p.x() = 0;
       } else if (cage_.mesh.is_half()) {
         p.x() = std::max(p.x(), std::min(before, off_plane));
@@ -227,6 +241,20 @@ private:
     }
   }
 
+  // Takes the corners that stay out of the constraint. \returns false if none is left
+  static bool fix_corners(BlockConstraint& c) {
+    const Index any = std::min({c.vertex[0], c.vertex[1], c.vertex[2]}); // none is the greatest
+    double left = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (c.vertex[k] == no_index) {
+        c.vertex[k] = any;
+        c.weight[k] = 0;
+      }
+      left += c.weight[k];
+    }
+    return any != no_index && left > 0;
+  }
+
   [[nodiscard]] Triangle numbered(const Triangle& t) const {
     return {number_[t[0]], number_[t[1]], number_[t[2]]};
   }
@@ -263,7 +291,7 @@ private:
   [[nodiscard]] std::vector<Index> faces_in_trouble(const Positions& next,
                                                     const std::vector<bool>& changed) const {
     CageMesh moved = cage_.mesh;
-    for (const Index v : living_) {
+    for (const Index v : moving_) {
       moved.set_position(v, next[v]);
     }
     const FaceBoxes boxes(moved);
@@ -339,8 +367,10 @@ private:
     std::vector<std::uint8_t> lost(parts.size(), 0);
     parallel_for(0, parts.size(), 1, [&](std::size_t i) {
       double angle = 0;
-      for (const Index f : faces_) {
-        angle += solid_angle(cage_.mesh, parts[i].point, corners(next, f));
+      for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
+        if (cage_.mesh.has_face(f)) {
+          angle += solid_angle(cage_.mesh, parts[i].point, corners(next, f));
+        }
       }
       lost[i] = static_cast<std::uint8_t>(angle < 2 * std::numbers::pi);
     });
@@ -349,7 +379,7 @@ private:
 
   void take(const Positions& next) {
     at_ = next;
-    for (const Index v : living_) {
+    for (const Index v : moving_) {
       cage_.mesh.set_position(v, next[v]);
     }
     for (const Index f : faces_) {
@@ -360,10 +390,10 @@ private:
   WorkingCage& cage_;
   const Guard& guard_;
   const Objective& objective_;
-  Positions at_; // the present, valid positions of all vertices
-  std::vector<Index> number_;
-  std::vector<Index> living_;
-  std::vector<Index> faces_;
+  Positions at_;              // the present, valid positions of all vertices
+  std::vector<Index> number_; // in the programs; none of vertices that stay
+  std::vector<Index> moving_;
+  std::vector<Index> faces_; // at moving vertices
   Vec3 center_ = Vec3::Zero();
 };
 
@@ -371,7 +401,7 @@ private:
 
 double relax(WorkingCage& cage, const Guard& guard, const Objective& objective,
              const RelaxOptions& options, const Progress& progress) {
-  return Relaxation(cage, guard, objective).run(options, progress);
+  return Relaxation(cage, guard, objective, options.movable).run(options, progress);
 }
 
 } // namespace cagewright

@@ -5,6 +5,8 @@
 #include "core/progress.h"
 #include "improve/simplify.h"
 
+#include <span>
+
 namespace cagewright {
 
 struct RelaxOptions {
@@ -12,6 +14,7 @@ struct RelaxOptions {
   double first_step = 0.01;  ///< no vertex moves further in the first step, in diagonals; less if
                              ///< the last step on this cage was much shorter
   double least_gain = 0.002; ///< stop when a step lowers the objective by less than this share
+  std::span<const Index> movable = {}; ///< only these vertices move; none: all do
 };
 
 /// Lowers the objective by sequential quadratic programs over all vertices: each step takes the
@@ -19,7 +22,7 @@ struct RelaxOptions {
 /// (linear in the three corners of a face, so that it can tilt and slide). What of a step would
 /// leave the cage invalid is shortened until it does not. The cage stays valid throughout.
 ///
-/// \returns the objective of the result
+/// \returns the objective of the result: of the faces at movable vertices
 double relax(WorkingCage& cage, const Guard& guard, const Objective& objective,
              const RelaxOptions& options, const Progress& progress = {});
 
