@@ -107,5 +107,44 @@ TEST(BlockProgram, ComesAsNearAsItCanToConstraintsThatContradict) {
   EXPECT_NEAR(x[0].x(), 0, 1e-3); // 1 <= x <= -1
 }
 
+// What a step of the relaxation is corrected by: nothing pulls, and faces that have sunk into a
+// model ask for room at many places, against each other.
+TEST(BlockProgram, FindsRoomForManyConstraintsThatAskForMuchMoreThanTheSlack) {
+  constexpr Index count = 250;
+  constexpr double slack = 1e-7;
+  Random random(1);
+  BlockQuadratic quadratic(count);
+  for (Index v = 0; v < count; ++v) {
+    quadratic.terms.push_back({v, v, 50 * Mat3::Identity()});
+  }
+  std::vector<BlockConstraint> constraints;
+  for (Index v = 0; v + 2 < count; ++v) {
+    const Vec3 normal =
+        Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    const bool sunk = v % 2 == 0;
+    for (int k = 0; k < 16; ++k) {
+      const double a = random.uniform(0, 1);
+      const double b = random.uniform(0, 1 - a);
+      const double bound = sunk ? random.uniform(-1e-4, 2.6e-3) : random.uniform(-5e-3, -1e-5);
+      constraints.push_back({{v, v + 1, v + 2}, {a, b, 1 - a - b}, normal, bound});
+    }
+    for (const double side : {1.0, -1.0}) {
+      for (int k = 0; k < 3; ++k) {
+        constraints.push_back({{v, v, v}, {1, 0, 0}, side * Vec3::Unit(k), -2.5e-3});
+      }
+    }
+  }
+  const std::vector<Vec3> x = minimize(quadratic, constraints, {.slack = slack});
+  double missed = 0;
+  for (const BlockConstraint& c : constraints) {
+    double reached = 0;
+    for (int i = 0; i < 3; ++i) {
+      reached += c.weight[i] * c.direction.dot(x[c.vertex[i]]);
+    }
+    missed = std::max(missed, c.bound - reached);
+  }
+  EXPECT_LT(missed, 2e-3);
+}
+
 } // namespace
 } // namespace cagewright
