@@ -6,6 +6,7 @@
 #include "quads/grid_layout.h"
 #include "quads/quad_weights.h"
 #include "quads/relax_quads.h"
+#include "quads/settle_shapes.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -144,8 +145,9 @@ Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions
   // Each round takes as long as there are vertices, and more.
   constexpr int work = 800;
   loops.rounds = std::clamp(work / most, 1, 8);
-  exchange_loops(cage, guard, objective, loops, progress.part(0.3, 1));
+  exchange_loops(cage, guard, objective, loops, progress.part(0.3, 0.95));
   split_unfit(cage, options.quads.limits);
+  settle_shapes(cage, guard, objective, settle, progress.part(0.95, 1));
   if (progress.cancelled()) {
     return Error::cancelled();
   }

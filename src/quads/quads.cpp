@@ -7,6 +7,7 @@
 #include "quads/quad_weights.h"
 #include "quads/relax_quads.h"
 #include "quads/retile.h"
+#include "quads/settle_shapes.h"
 
 #include <algorithm>
 #include <map>
@@ -159,7 +160,7 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   constexpr int rounds = 6;
   for (int round = 0; round < rounds; ++round) {
     const Progress part =
-        progress.part(0.1 + 0.9 * round / rounds, 0.1 + 0.9 * (round + 1) / rounds);
+        progress.part(0.1 + 0.85 * round / rounds, 0.1 + 0.85 * (round + 1) / rounds);
     const bool is_last = round == rounds - 1;
     const double slack = std::max(0.0, 1 - round / (rounds - 2.0));
     QuadLimits limits = options.limits;
@@ -183,6 +184,7 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
     relax_quads(cage, guard, objective, settle, part.part(0.5, 1));
   }
   split_unfit(cage, options.limits);
+  settle_shapes(cage, strict, objective, {.keep = options.clearance}, progress.part(0.95, 1));
   if (progress.cancelled()) {
     return Error::cancelled();
   }

@@ -26,24 +26,23 @@ double six_volumes(const QuadCorners& q) {
 
 /// What is measured of a quad with diagonals d and e, in lengths of l^2 = (d^2 + e^2) / 2.
 struct QuadTerms {
-  explicit QuadTerms(const QuadCorners& q, double free_warp)
+  QuadTerms(const QuadCorners& q, const RelaxQuadsOptions& options)
       : diagonals{q[2] - q[0], q[3] - q[1]}, skew(q[0] - q[1] + q[2] - q[3]) {
     const double d = diagonals[0].squaredNorm();
     const double e = diagonals[1].squaredNorm();
     squared = std::max((d + e) / 2, 1e-300);
     unequal = (d - e) / squared;
     warp = six_volumes(q) / std::pow(squared, 1.5);
-    excess = std::copysign(std::max(0.0, std::abs(warp) - free_warp), warp);
+    excess = std::copysign(std::max(0.0, std::abs(warp) - options.free_warp), warp);
     normal = diagonals[0].cross(diagonals[1]);
     normal /= std::max(normal.norm(), 1e-300);
     for (int k = 0; k < 4; ++k) {
       const Vec3 next = q[(k + 1) % 4] - q[k];
       const Vec3 last = q[(k + 3) % 4] - q[k];
       sides[k] = std::max(next.norm() * last.norm(), 1e-300);
-      flatness[k] = std::max(0.0, free_sine - normal.dot(next.cross(last)) / sides[k]);
+      flatness[k] = std::max(0.0, options.free_sine - normal.dot(next.cross(last)) / sides[k]);
     }
   }
-  static constexpr double free_sine = 0.5;
 
   /// The sum of the squares of `flatness`.
   [[nodiscard]] double flat_corners() const {
@@ -56,7 +55,7 @@ struct QuadTerms {
 
   Vec3 normal;                      ///< of the vector area
   std::array<double, 4> sides{};    ///< the product of those at each corner
-  std::array<double, 4> flatness{}; ///< of each corner: its sine, below free_sine
+  std::array<double, 4> flatness{}; ///< of each corner: what its sine is below free_sine
   std::array<Vec3, 2> diagonals;
   Vec3 skew;
   double squared = 0; ///< l^2
@@ -153,7 +152,7 @@ private:
       sum += part_weight(face) * x * x;
     }
     if (face.is_quad()) {
-      const QuadTerms terms(corners_of(at, face), options_.free_warp);
+      const QuadTerms terms(corners_of(at, face), options_);
       sum += weight_of(face) *
              (options_.even * terms.skew.squaredNorm() / terms.squared +
               options_.square * terms.unequal * terms.unequal +
@@ -322,7 +321,7 @@ private:
 
   // Least squares of what is measured of a quad, its size taken as fixed.
   void add_shape(const QuadCorners& q, double weight, Piece& piece) const {
-    const QuadTerms terms(q, options_.free_warp);
+    const QuadTerms terms(q, options_);
     const double even = 2 * weight * options_.even / terms.squared;
     for (int k = 0; k < 4; ++k) {
       const double sign = k % 2 == 0 ? 1 : -1;

@@ -19,7 +19,8 @@ struct RelaxQuadsOptions {
   // squared diagonals.
   double even = 2;        ///< |a - b + c - d|^2 / l^2 of the corners: 0 for a parallelogram
   double square = 1;      ///< the squared difference of the squared diagonals, over l^4
-  double corner = 100;    ///< for each corner, the square of what its sine is below 1/2
+  double corner = 100;    ///< for each corner, the square of what its sine is below `free_sine`
+  double free_sine = 0.5; ///< that of 30 degrees and of 150
   double flat = 800;      ///< the square of what the warp (six volumes / l^3) is above `free_warp`
   double free_warp = 0.1; ///< that of a square bent by 24 degrees
   double slender = 0; ///< of each cutting's triangles, the square of their shape_defect() above ...
