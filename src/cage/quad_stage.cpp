@@ -69,15 +69,15 @@ Result<QuadStage> quads_of_blocks(TriangleView model, const QuadOptions& quads,
 }
 
 /// How many times as loose as quads made of triangles a cage of blocks may be: rings of edges are
-/// worth some room between cage and model.
-constexpr double worth_of_rings = 1.5;
+/// worth some room between cage and model. More if too few of the faces of pairs are quads.
+double most_loose(const QuadReport& pairs) {
+  return pairs.share < enough_quads ? 2 : 1.5;
+}
 
 /// How many times their volume it may have. Where blocks span two limbs their faces are near the
-/// model all the same; it is the volume that shows it. It may be more if too few of the faces of
-/// pairs are quads.
+/// model all the same; it is the volume that shows it.
 double most_volume(const QuadReport& pairs) {
-  constexpr double enough = 0.7; // of the faces
-  return pairs.share < enough ? 1.12 : 1.08;
+  return pairs.share < enough_quads ? 1.25 : 1.08;
 }
 
 /// Of a half: up to its plane, seen from where what closes it there has no volume.
@@ -184,7 +184,7 @@ Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, Tria
   const auto loose = [&](const QuadStage& stage) {
     return looseness(stage.made.cage, surface, all, quads);
   };
-  const double most = worth_of_rings * loose(*pairs);
+  const double most = most_loose(pairs->made.report) * loose(*pairs);
   const double loosest = pairs->report.reached ? most : 0; // 0: any
   const Result<QuadStage> blocks =
       quads_of_blocks(model, quads, budget, loosest, progress.part(paired, 1));

@@ -42,6 +42,83 @@ constexpr double wide_bend = 30; // degrees more
 constexpr double wide_least_angle = 5;
 constexpr double wide_angle = 175;
 
+/// What quads are made with.
+struct Setting {
+  const ModelSurface& surface;
+  const Objective& objective;
+  const DirectionField& field;
+  const QuadOptions& options;
+};
+
+/// Pairs and tiles the faces of a cage that has room, and moves its vertices, in rounds from much
+/// room and wide limits to none and those asked for.
+///
+/// \param lone  what a triangle costs: see FaceWishes
+QuadCage with_quads(QuadCage cage, const Setting& setting, double lone, const Progress& progress) {
+  const QuadOptions& options = setting.options;
+  const double clearance = options.clearance * setting.surface.diagonal;
+  constexpr int rounds = 6;
+  for (int round = 0; round < rounds; ++round) {
+    const Progress part =
+        progress.part(static_cast<double>(round) / rounds, (round + 1.0) / rounds);
+    const bool is_last = round == rounds - 1;
+    const double slack = std::max(0.0, 1 - round / (rounds - 2.0));
+    QuadLimits limits = options.limits;
+    limits.max_bend_degrees += slack * wide_bend;
+    limits.min_angle_degrees += slack * (wide_least_angle - limits.min_angle_degrees);
+    limits.max_angle_degrees += slack * (wide_angle - limits.max_angle_degrees);
+    const QuadGuard guard(setting.surface, clearance, limits);
+    Taste taste;
+    taste.wishes.limits = limits;
+    taste.wishes.lone = lone;
+    taste.wishes.beyond = is_last ? 0 : 60;
+    if (is_last) {
+      split_unfit(cage, limits);
+    }
+    cage.renumber_faces();
+    pair_triangles(cage, guard, setting.field, taste);
+    retile(cage, guard, setting.field, taste, part.part(0, 0.5));
+    cage.renumber_faces();
+    RelaxQuadsOptions settle;
+    settle.keep = options.clearance + slack * options.room;
+    settle.steps = is_last ? 8 : 4;
+    relax_quads(cage, guard, setting.objective, settle, part.part(0.5, 1));
+  }
+  split_unfit(cage, options.limits);
+  return cage;
+}
+
+double share_of_quads(const QuadCage& cage) {
+  double quads = 0;
+  double faces = 0;
+  for (Index f = 0; f < cage.face_end(); ++f) {
+    faces += cage.has_face(f) ? 1 : 0;
+    quads += cage.face(f).is_quad() ? 1 : 0;
+  }
+  return faces > 0 ? quads / faces : 0;
+}
+
+/// The first of several tries that has enough quads, each with triangles dearer than in the last:
+/// there are fewer of them then, and quads that need more bending. If none has, the one with most.
+QuadCage with_enough_quads(const QuadCage& roomy, const Setting& setting,
+                           const Progress& progress) {
+  constexpr std::array lone = {4.0, 6.0, 8.0, 12.0};
+  QuadCage best = roomy;
+  double most = -1;
+  double done = 0;
+  for (std::size_t i = 0; i < lone.size() && most < enough_quads && !progress.cancelled(); ++i) {
+    const double then = i == 0 ? 0.7 : (done + 1) / 2; // more tries are seldom needed
+    QuadCage cage = with_quads(roomy, setting, lone[i], progress.part(done, then));
+    done = then;
+    const double share = share_of_quads(cage);
+    if (share > most) {
+      most = share;
+      best = std::move(cage);
+    }
+  }
+  return best;
+}
+
 /// Each quad begins at a corner of its shorter diagonal.
 void turn_quads(QuadCage& cage) {
   std::vector<Index> removed;
@@ -156,34 +233,7 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   relax_quads(cage, strict, objective, make_room, progress.part(0, 0.1));
   const DirectionField field(cut(cage));
 
-  // From much room and wide limits to none and those asked for.
-  constexpr int rounds = 6;
-  for (int round = 0; round < rounds; ++round) {
-    const Progress part =
-        progress.part(0.1 + 0.85 * round / rounds, 0.1 + 0.85 * (round + 1) / rounds);
-    const bool is_last = round == rounds - 1;
-    const double slack = std::max(0.0, 1 - round / (rounds - 2.0));
-    QuadLimits limits = options.limits;
-    limits.max_bend_degrees += slack * wide_bend;
-    limits.min_angle_degrees += slack * (wide_least_angle - limits.min_angle_degrees);
-    limits.max_angle_degrees += slack * (wide_angle - limits.max_angle_degrees);
-    const QuadGuard guard(surface, clearance, limits);
-    Taste taste;
-    taste.wishes.limits = limits;
-    taste.wishes.beyond = is_last ? 0 : 60;
-    if (is_last) {
-      split_unfit(cage, limits);
-    }
-    cage.renumber_faces();
-    pair_triangles(cage, guard, field, taste);
-    retile(cage, guard, field, taste, part.part(0, 0.5));
-    cage.renumber_faces();
-    RelaxQuadsOptions settle;
-    settle.keep = options.clearance + slack * options.room;
-    settle.steps = is_last ? 8 : 4;
-    relax_quads(cage, guard, objective, settle, part.part(0.5, 1));
-  }
-  split_unfit(cage, options.limits);
+  cage = with_enough_quads(cage, {surface, objective, field, options}, progress.part(0.1, 0.95));
   settle_shapes(cage, strict, objective, {.keep = options.clearance}, progress.part(0.95, 1));
   if (progress.cancelled()) {
     return Error::cancelled();

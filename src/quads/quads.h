@@ -26,6 +26,9 @@ struct QuadOptions {
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
 };
 
+/// The share of quads among the faces that make_quads() aims at.
+inline constexpr double enough_quads = 0.7;
+
 struct QuadReport {
   std::size_t quads = 0;
   std::size_t triangles = 0;
@@ -48,7 +51,8 @@ struct Quadrangulated {
   QuadReport report;
 };
 
-/// Makes a quad-dominant cage of a cage of triangles, with the same vertices or fewer, moved.
+/// Makes a quad-dominant cage of a cage of triangles, with the same vertices or fewer, moved. While
+/// fewer than `enough_quads` of the faces are quads it is tried again, four times at most.
 ///
 /// The cage is valid and keeps the clearance: so does the result, because no change is made
 /// that was not checked. It may be open if its border lies in the plane x = 0: then it is one half
