@@ -593,8 +593,11 @@ private:
       }
     } else {
       for (const Triangle& t : FaceParts(face)) {
-        const double defect = shape_defect(corners(next, t));
-        if (defect > std::max(worst_defect, shape_defect(corners(at_, t)))) {
+        const Corners now = corners(at_, t);
+        const Corners then = corners(next, t);
+        const double least_quality = std::min(guard_.limits().min_quality, shape_quality(now));
+        if (shape_defect(then) > std::max(worst_defect, shape_defect(now)) ||
+            shape_quality(then) < least_quality) {
           return true;
         }
       }

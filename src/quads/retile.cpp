@@ -424,8 +424,11 @@ private:
     constexpr double worst_defect = 8;
     constexpr double sharpest = -0.8;
     const std::vector<Vec3>& x = cage_.positions();
-    if (!face.is_quad() && shape_defect({x[face[0]], x[face[1]], x[face[2]]}) > worst_defect) {
-      return false;
+    if (!face.is_quad()) {
+      const Corners t{x[face[0]], x[face[1]], x[face[2]]};
+      if (shape_defect(t) > worst_defect || shape_quality(t) < guard_.limits().min_quality) {
+        return false;
+      }
     }
     const Vec3 n = area_vector(x, face).normalized();
     for (int i = 0; i < face.size; ++i) {

@@ -6,12 +6,13 @@
 
 namespace cagewright {
 
-/// Of the faces, those that have a long and thin triangle (2 r / R below 0.16) along either
+/// Of the faces, those that have a long and thin triangle (2 r / R below 0.152) along either
 /// diagonal; 0 to 1.
 double thin_share(const QuadCage& cage);
 
-/// Relaxes the cage again if more than one face in twenty is thin, weighing thin triangles and flat
-/// corners more, up to three times, each time more than the last, until that is mended.
+/// Relaxes the cage again while more than one face in twenty is thin, seven times at most, weighing
+/// thin triangles and flat corners three times as much each time. Then it is tightened once more as
+/// before, so that no face becomes thin.
 ///
 /// \param options  how it was relaxed before: its weights are where this begins
 void settle_shapes(QuadCage& cage, const QuadGuard& guard, const Objective& objective,
