@@ -64,15 +64,6 @@ double shape_defect(const Corners& t) {
   return scaled * (most + good_shape) > sides ? std::max(0.0, sides / scaled - good_shape) : most;
 }
 
-double shape_quality(const Corners& t) {
-  const double a = (t[1] - t[0]).norm();
-  const double b = (t[2] - t[1]).norm();
-  const double c = (t[0] - t[2]).norm();
-  const double area = triangle_area(t);
-  const double scale = (a + b + c) * a * b * c;
-  return scale > 0 ? 16 * area * area / scale : 0;
-}
-
 double bend(const Corners& s, const Corners& t) {
   const Vec3 m = (s[1] - s[0]).cross(s[2] - s[0]);
   const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "improve/guard.h"
+#include "mesh/measures.h"
 
 #include <limits>
 #include <span>
@@ -74,7 +75,7 @@ public:
     return model_->tree.nearest(p, std::numeric_limits<double>::infinity(), error);
   }
 
-  /// A face's own part: the integral of the gap, by six nearest points, and the shape.
+  /// A face's own part: the integral of the gap, by three nearest points, and the shape.
   [[nodiscard]] double face(const Corners& t) const;
 
   /// The greatest distance to the model at fifteen points of the triangle, its corners among them.
@@ -116,7 +117,9 @@ double shape_defect(const Corners& t);
 double triangle_area(const Corners& t);
 
 /// 2 r / R: 1 for an equilateral triangle, 0 for one without area.
-double shape_quality(const Corners& t);
+inline double shape_quality(const Corners& t) {
+  return triangle_quality(t[0], t[1], t[2]);
+}
 
 /// The cosine of the angle between the normals of two faces: -1 when one is folded onto the other.
 double bend(const Corners& s, const Corners& t);
