@@ -13,6 +13,9 @@ struct Taste {
   double alignment = 1;   ///< of each side, the field's misalignment
   double tentative = 0.5; ///< of a quad that is valid along one diagonal only
   double valence = 0.35;  ///< of each vertex, (faces at it - 4)^2
+  /// Of what is enclosed by some faces and not by those that they take the place of, in volumes
+  /// a^1.5, a the mean area of the latter.
+  double volume = 12;
 };
 
 /// face_defect() and the misalignment of the face's sides, each of which belongs to two faces.

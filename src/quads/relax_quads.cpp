@@ -260,7 +260,8 @@ private:
     }
     // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
     const double soft = 0.05 * guard_.clearance() / unit;
-    std::vector<Vec3> step = minimize(quadratic, constraints, {.slack = towards_goal ? 1e-6 : soft});
+    std::vector<Vec3> step =
+        minimize(quadratic, constraints, {.slack = towards_goal ? 1e-6 : soft});
     const auto is_zero = [](const Vec3& v) { return v == Vec3::Zero(); };
     if (towards_goal && std::all_of(step.begin(), step.end(), is_zero)) {
       step = minimize(quadratic, constraints, {.slack = soft}); // they contradict each other

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -253,10 +254,22 @@ private:
     return valence < least ? unfit : taste_.valence * (valence - 4) * (valence - 4);
   }
 
+  // The volume between the face and a point: of a quad the mean over its two cuttings.
+  [[nodiscard]] double volume_from(const Vec3& origin, const CageFace& face) const {
+    const std::vector<Vec3>& x = cage_.positions();
+    const FaceParts parts(face, FaceParts::Of::all);
+    double sum = 0;
+    for (const Triangle& t : parts) {
+      sum += (x[t[0]] - origin).dot((x[t[1]] - origin).cross(x[t[2]] - origin)) / 6;
+    }
+    return parts.count == 4 ? sum / 2 : sum;
+  }
+
   // What is known of a face that a region may be tiled with.
   struct Known {
     CageFace face; // on the ring
-    double cost = -1;
+    double cost = 0;
+    bool has_cost = false;
     enum class Fits { unknown, yes, no } fits = Fits::unknown;
   };
 
@@ -278,6 +291,17 @@ private:
       }
       now += valence_cost(ring[i], 0);
     }
+    // Of all tilings the one that encloses least is best: the others span limbs.
+    double volume_now = 0;
+    double area = 0;
+    const Vec3& origin = cage_.positions()[ring[0]];
+    for (const Index f : region) {
+      volume_now += volume_from(origin, cage_.face(f));
+      area += area_vector(cage_.positions(), cage_.face(f)).norm() / 2;
+    }
+    const double volume_cost =
+        taste_.volume / std::max(std::pow(area / static_cast<double>(region.size()), 1.5), 1e-300);
+    now += volume_cost * volume_now;
     const TilingTable& table = tilings_[ring.size() - 4];
     std::vector<Known> known(table.faces.size());
     for (std::size_t k = 0; k < known.size(); ++k) {
@@ -299,10 +323,12 @@ private:
       }
       double then = 0;
       change = faces_at;
-      for (std::size_t i = 0; i < tiling.faces.size() && then < now; ++i) {
+      for (std::size_t i = 0; i < tiling.faces.size(); ++i) {
         Known& face = known[tiling.faces[i]];
-        if (face.cost < 0) {
-          face.cost = cost_of(cage_.positions(), field_, taste_, face.face);
+        if (!face.has_cost) {
+          face.cost = cost_of(cage_.positions(), field_, taste_, face.face) +
+                      volume_cost * volume_from(origin, face.face);
+          face.has_cost = true;
         }
         then += face.cost;
         for (const Index corner : table.faces[tiling.faces[i]].span()) {
