@@ -265,9 +265,12 @@ private:
     return settle(2, progress.part(0.6, 1));
   }
 
-  // Tightens the cage for the last time. If too many faces are thin then, their shape is made to
-  // count more until it is better. \returns the objective, as it was weighted before
+  // Tightens the cage for the last time, without needles. If too many faces are thin then, their
+  // shape is made to count more until it is better. \returns the objective, as it was weighted
+  // before
   double settle_shapes(const Progress& progress) {
+    constexpr double needle = 0.05;
+    mend_needles(cage_, guard_, objective_, needle, most_valence_);
     relax_steps(2, progress.part(0, 0.25));
     const double weight = objective_.weights().shape;
     constexpr int attempts = 3;

@@ -92,7 +92,8 @@ std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change
     if (stale) {
       continue;
     }
-    if (patch.vertex != no_index && patch.vertex != cage.mesh.vertex_end()) {
+    const bool is_split = patch.vertex != no_index && patch.gone == no_index;
+    if (is_split && patch.vertex != cage.mesh.vertex_end()) {
       const Index renamed = cage.mesh.vertex_end(); // the first split took the number
       for (Triangle& t : patch.added) {
         std::replace(t.begin(), t.end(), patch.vertex, renamed);
@@ -107,7 +108,8 @@ std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change
     }
     const std::size_t before = cage.mesh.vertex_count();
     cage.apply(patch);
-    const std::size_t added = std::max<std::size_t>(1, cage.mesh.vertex_count() - before);
+    const std::size_t after = cage.mesh.vertex_count();
+    const std::size_t added = after > before ? after - before : 1;
     for (const Triangle& t : patch.added) {
       for (const Index v : t) {
         for (const Index f : cage.mesh.around(v)) {
@@ -142,6 +144,39 @@ std::optional<Change> placed_split(const CageMesh& mesh, const Guard& guard,
   return Change{gain, std::move(patch), edge};
 }
 
+// A face that is thinner than it may be, or so small that what has grown together there has not
+// been made one.
+bool is_needle(const Corners& t, double least, double diagonal) {
+  constexpr double speck = 1e-6;
+  const double longest = std::max(
+      {(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
+  return shape_quality(t) < least || longest < std::pow(speck * diagonal, 2);
+}
+
+template <class T> std::vector<T> each_once(std::vector<T> all) {
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+std::vector<Edge> sides_of(std::span<const Triangle> faces) {
+  std::vector<Edge> edges;
+  for (const Triangle& t : faces) {
+    for (int i = 0; i < 3; ++i) {
+      edges.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
+    }
+  }
+  return each_once(std::move(edges));
+}
+
+std::vector<Index> corners_of(std::span<const Triangle> faces) {
+  std::vector<Index> vertices;
+  for (const Triangle& t : faces) {
+    vertices.insert(vertices.end(), t.begin(), t.end());
+  }
+  return each_once(std::move(vertices));
+}
+
 // The cage with the edge split near the tip, and the new vertex, the tip, and their neighbours
 // where they are best.
 std::optional<WorkingCage> with_split_tip(const WorkingCage& cage, const Guard& guard,
@@ -162,8 +197,7 @@ std::optional<WorkingCage> with_split_tip(const WorkingCage& cage, const Guard& 
   for (const Index v : made.mesh.neighbors(middle)) {
     movable.push_back(v);
   }
-  std::sort(movable.begin(), movable.end());
-  movable.erase(std::unique(movable.begin(), movable.end()), movable.end());
+  movable = each_once(std::move(movable));
   constexpr int steps = 6;
   relax(made, guard, objective, {.steps = steps, .movable = movable});
   made.reach = cage.reach;
@@ -243,26 +277,19 @@ std::size_t split_far_faces(WorkingCage& cage, const Guard& guard, const Objecti
     const auto f = static_cast<Index>(i);
     gaps[f] = mesh.has_face(f) ? objective.sampled_gap(corners_of(mesh, f)) : 0;
   });
-  std::vector<Edge> edges;
-  std::size_t far = 0;
+  std::vector<Triangle> far;
   for (Index f = 0; f < mesh.face_end(); ++f) {
-    if (gaps[f] <= limit) {
-      continue;
-    }
-    ++far;
-    const Triangle& t = mesh.face(f);
-    for (int i = 0; i < 3; ++i) {
-      edges.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
+    if (gaps[f] > limit) {
+      far.push_back(mesh.face(f));
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const std::vector<Edge> edges = sides_of(far);
   const std::vector<double> values = objective.face_values(mesh);
   const std::vector<Change> changes = ranked(edges, [&](const Edge& edge) {
     return placed_split(cage.mesh, guard, objective, values, edge, most_valence);
   });
   make(cage, guard, changes, edges.size());
-  return far;
+  return far.size();
 }
 
 bool split_tip(WorkingCage& cage, const Guard& guard, const Objective& objective, Index tip,
@@ -280,6 +307,66 @@ bool split_tip(WorkingCage& cage, const Guard& guard, const Objective& objective
   }
   cage = std::move(*made[best]);
   return true;
+}
+
+std::size_t mend_needles(WorkingCage& cage, const Guard& guard, const Objective& objective,
+                         double least, std::size_t most_valence) {
+  const CageMesh& mesh = cage.mesh;
+  const double any_cost = std::pow(objective.diagonal(), 3) * objective.weights().typical_emphasis;
+  std::vector<double> values;
+  const auto rounder = [&](Patch patch, const Edge& edge) -> std::optional<Change> {
+    const std::optional<Vec3> position = place_clear_of_model(guard, objective, mesh, patch);
+    if (!position) {
+      return std::nullopt;
+    }
+    patch.position = *position;
+    std::ptrdiff_t needles = 0; // more than before
+    for (const Triangle& t : patch.added) {
+      needles += is_needle(corners_after(mesh, patch, t), least, objective.diagonal()) ? 1 : 0;
+    }
+    for (const Index f : patch.removed) {
+      needles -= is_needle(corners_of(mesh, f), least, objective.diagonal()) ? 1 : 0;
+    }
+    if (needles >= 0 || !keeps_shape(mesh, patch) || objective.widens_gap(mesh, patch)) {
+      return std::nullopt;
+    }
+    const double change = objective.change(mesh, values, patch);
+    return Change{any_cost - change, std::move(patch), edge};
+  };
+  const auto collapsed = [&](const Edge& edge) -> std::optional<Change> {
+    std::optional<Patch> patch = mesh.collapse(edge[0], edge[1]);
+    const bool fits = patch && mesh.sides(patch->vertex) * patch->added.size() <= most_valence;
+    return fits ? rounder(std::move(*patch), edge) : std::nullopt;
+  };
+  const auto moved = [&](Index v) { // from amid its neighbors: a needle has no way to go
+    const std::vector<Index> neighbors = mesh.neighbors(v);
+    Vec3 middle = Vec3::Zero();
+    for (const Index w : neighbors) {
+      middle += mesh.position(w) / static_cast<double>(neighbors.size());
+    }
+    if (mesh.on_plane(v)) {
+      middle.x() = 0;
+    }
+    return rounder(mesh.move(v, middle), {v, v});
+  };
+  std::size_t total = 0;
+  for (;;) {
+    values = objective.face_values(mesh);
+    std::vector<Triangle> needles;
+    for (Index f = 0; f < mesh.face_end(); ++f) {
+      if (mesh.has_face(f) && is_needle(corners_of(mesh, f), least, objective.diagonal())) {
+        needles.push_back(mesh.face(f));
+      }
+    }
+    std::size_t made = make(cage, guard, ranked(sides_of(needles), collapsed), needles.size());
+    if (made == 0) {
+      made = make(cage, guard, ranked(corners_of(needles), moved), needles.size());
+    }
+    total += made;
+    if (made == 0) {
+      return total;
+    }
+  }
 }
 
 } // namespace cagewright

@@ -94,5 +94,33 @@ TEST_F(SpikedCage, MovesOnlyTheVerticesThatMay) {
   EXPECT_TRUE(validate_cage(after, model_)->valid());
 }
 
+// What a union of boxes may leave: vertices that ought to be one, and hardly a face between them.
+TEST_F(SpikedCage, LosesItsNeedles) {
+  Patch patch = cage_.mesh.split(tip, cage_.mesh.neighbors(tip)[0]);
+  patch.position = cage_.mesh.position(tip) - Vec3(1e-9, 0, 0);
+  cage_.apply(patch);
+  Patch speck = cage_.mesh.split(tip, patch.vertex);
+  cage_.apply(speck);
+  constexpr double least = 0.05;
+  const auto needles = [&] {
+    std::size_t count = 0;
+    for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
+      count += cage_.mesh.has_face(f) && shape_quality(corners_of(cage_.mesh, f)) < least ? 1 : 0;
+    }
+    return count;
+  };
+  ASSERT_EQ(needles(), 4);
+  EXPECT_EQ(mend_needles(cage_, guard_, objective_, least, 10), 2);
+  EXPECT_EQ(needles(), 0);
+  EXPECT_EQ(cage_.mesh.vertex_count(), spiked().positions.size());
+  EXPECT_TRUE(validate_cage(cage_.mesh.compact(), model_)->valid());
+}
+
+TEST_F(SpikedCage, WithoutNeedlesStaysAsItIs) {
+  const TriangleMesh before = cage_.mesh.compact();
+  EXPECT_EQ(mend_needles(cage_, guard_, objective_, 0.05, 10), 0);
+  EXPECT_EQ(cage_.mesh.compact().positions, before.positions);
+}
+
 } // namespace
 } // namespace cagewright
