@@ -216,6 +216,7 @@ private:
   // The vertex farthest from the model of those not tried, if it is far.
   [[nodiscard]] std::optional<Tip> farthest_tip(const std::vector<Index>& tried) const {
     constexpr double far = 5;      // times the mean
+    constexpr double least = 0.02; // of the diagonal: less is hardly seen
     constexpr double worth = 0.02; // of what there is between cage and model
     const CageMesh& mesh = cage_.mesh;
     double area = 0;
@@ -238,7 +239,9 @@ private:
         }
       }
     }
-    return tip.distance * area > far * sum ? std::optional(tip) : std::nullopt;
+    const bool is_far =
+        tip.distance > least * objective_.diagonal() && tip.distance * area > far * sum;
+    return is_far ? std::optional(tip) : std::nullopt;
   }
 
   // The greatest distance of a vertex from the model.
