@@ -126,7 +126,7 @@ private:
   struct Group {
     std::size_t first = 0;
     std::size_t end = 0;
-    int corners = 3; // with weights
+    int corners = 0; // up to the last that has a weight
   };
 
   void find_groups() {

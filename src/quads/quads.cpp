@@ -88,16 +88,6 @@ QuadCage with_quads(QuadCage cage, const Setting& setting, double lone, const Pr
   return cage;
 }
 
-double share_of_quads(const QuadCage& cage) {
-  double quads = 0;
-  double faces = 0;
-  for (Index f = 0; f < cage.face_end(); ++f) {
-    faces += cage.has_face(f) ? 1 : 0;
-    quads += cage.face(f).is_quad() ? 1 : 0;
-  }
-  return faces > 0 ? quads / faces : 0;
-}
-
 /// The first of several tries that has enough quads, each with triangles dearer than in the last:
 /// there are fewer of them then, and quads that need more bending. If none has, the one with most.
 QuadCage with_enough_quads(const QuadCage& roomy, const Setting& setting,
@@ -110,7 +100,7 @@ QuadCage with_enough_quads(const QuadCage& roomy, const Setting& setting,
     const double then = i == 0 ? 0.7 : (done + 1) / 2; // more tries are seldom needed
     QuadCage cage = with_quads(roomy, setting, lone[i], progress.part(done, then));
     done = then;
-    const double share = share_of_quads(cage);
+    const double share = report_of(cage.to_polygons()).share;
     if (share > most) {
       most = share;
       best = std::move(cage);
