@@ -29,12 +29,17 @@ struct alignas(32) SurfaceNode {
 /// boxes err by so much towards visiting them.
 inline constexpr float frame_rounding = 4e-6F;
 
-// Queries of a node. Each returns a set of children as bits, and writes numbers about all of them.
-// Vectors and lengths are in the frame. The numbers are the same with every instruction set.
+// Queries of a node. Vectors and lengths are in the frame. The numbers are the same with every
+// instruction set.
 
-/// Those nearer than the root of `most` to p, and lower bounds of the squared distances.
-std::uint32_t children_near(const SurfaceNode& node, const float (&p)[3], float most,
-                            SurfaceNode::Lanes& squared);
+/// The lane with the least number, the last of several, if that number is below `most`; else -1.
+int least_below(const SurfaceNode::Lanes& lanes, float most);
+
+/// Lower bounds of the squared distances of all children to p, and `least_below` of them.
+int nearest_child(const SurfaceNode& node, const float (&p)[3], float most,
+                  SurfaceNode::Lanes& squared);
+
+// The others return a set of children as bits, and write numbers about all of them.
 
 /// A triangle: its box, and slabs that contain it. Of the first slab's normal the plates are
 /// heeded.

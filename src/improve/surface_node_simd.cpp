@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <bit>
+
 HWY_BEFORE_NAMESPACE();
 namespace cagewright {
 namespace HWY_NAMESPACE {
@@ -75,9 +77,25 @@ HWY_INLINE Range range(const SurfaceNode& node, const float (&slope)[3], float l
   return {hn::Max(box.low, hn::Sub(plate_at, plate)), hn::Min(box.high, hn::Add(plate_at, plate))};
 }
 
-std::uint32_t near(const SurfaceNode& node, const float (&p)[3], float most,
-                   SurfaceNode::Lanes& squared) {
-  std::uint32_t result = 0;
+// The last of the least lanes, if that is below `most`; else -1.
+HWY_INLINE int last_least(const SurfaceNode::Lanes& lanes, float most) {
+  V least = load(lanes, 0);
+  for (std::size_t i = hn::Lanes(d_); i < SurfaceNode::width; i += hn::Lanes(d_)) {
+    least = hn::Min(least, load(lanes, i));
+  }
+  least = hn::MinOfLanes(d_, least);
+  std::uint32_t set = 0;
+  for (std::size_t i = 0; i < SurfaceNode::width; i += hn::Lanes(d_)) {
+    set |= bits(hn::Eq(load(lanes, i), least), i);
+  }
+  return hn::GetLane(least) < most ? std::bit_width(set) - 1 : -1;
+}
+
+int least_lane(const SurfaceNode::Lanes& lanes, float most) {
+  return last_least(lanes, most);
+}
+
+int near(const SurfaceNode& node, const float (&p)[3], float most, SurfaceNode::Lanes& squared) {
   for (std::size_t i = 0; i < SurfaceNode::width; i += hn::Lanes(d_)) {
     V box = set(0);
     V all = set(0);
@@ -95,11 +113,9 @@ std::uint32_t near(const SurfaceNode& node, const float (&p)[3], float most,
         hn::Sub(hn::Abs(hn::Sub(height, load(node.middle, i))), load(node.thickness, i));
     const V plate = hn::Add(square(hn::Max(above, set(0))),
                             square(hn::Max(hn::Sub(aside, load(node.radius, i)), set(0))));
-    const V least = hn::Max(box, plate);
-    hn::StoreU(least, d_, squared + i);
-    result |= bits(hn::Lt(least, set(most)), i);
+    hn::Store(hn::Max(box, plate), d_, squared + i);
   }
-  return result;
+  return last_least(squared, most);
 }
 
 std::uint32_t within(const SurfaceNode& node, const SlabQuery& query, float reach) {
@@ -179,13 +195,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cagewright {
 
+HWY_EXPORT(least_lane);
 HWY_EXPORT(near);
 HWY_EXPORT(within);
 HWY_EXPORT(above);
 HWY_EXPORT(in_column);
 
-std::uint32_t children_near(const SurfaceNode& node, const float (&p)[3], float most,
-                            SurfaceNode::Lanes& squared) {
+int least_below(const SurfaceNode::Lanes& lanes, float most) {
+  return HWY_DYNAMIC_DISPATCH(least_lane)(lanes, most);
+}
+
+int nearest_child(const SurfaceNode& node, const float (&p)[3], float most,
+                  SurfaceNode::Lanes& squared) {
   return HWY_DYNAMIC_DISPATCH(near)(node, p, most, squared);
 }
 

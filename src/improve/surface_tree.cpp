@@ -11,9 +11,10 @@ namespace cagewright {
 
 namespace {
 
-// Median splits divide the count by eight at every level: 2^31 triangles need 11, with seven
-// siblings waiting at each.
-constexpr int deepest = 96;
+// Median splits divide the count by eight at every level: 2^31 triangles need 11.
+constexpr int most_levels = 12;
+// With seven siblings waiting at each.
+constexpr int deepest = 8 * most_levels;
 
 constexpr float rounding = frame_rounding;
 
@@ -310,44 +311,46 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double e
     const double length = std::sqrt(bound * shrink) + rounding;
     return static_cast<float>(std::min(length * length, 1e30));
   };
-  struct Entry {
-    float squared;
-    Index child;
-  };
-  std::array<Entry, deepest> stack;
-  int top = 0;
-  float most = limit();
-  if (!nodes_.empty()) {
-    stack[top++] = {0, 0};
+  if (nodes_.empty()) {
+    return best;
   }
-  while (top > 0) {
-    const Entry entry = stack[--top];
-    if (entry.squared >= most) {
-      continue;
-    }
-    if ((entry.child & leaf_bit) != 0) {
-      const Vec3 at = nearest_on(triangles_[entry.child & ~leaf_bit], p);
-      const double squared = (at - p).squaredNorm();
-      if (squared < bound) {
-        bound = squared;
-        best.point = at;
-        best.triangle = numbers_[entry.child & ~leaf_bit];
-        most = limit();
-      }
-      continue;
-    }
-    const SurfaceNode& node = nodes_[entry.child];
+  // The nodes from the root to the present one, with what is left of each.
+  struct alignas(32) Level {
     SurfaceNode::Lanes squared;
-    // The farthest first on the stack: the nearest is looked at next.
-    const int begin = top;
-    for (std::uint32_t set = children_near(node, q, most, squared); set != 0; set &= set - 1) {
-      const int i = std::countr_zero(set);
-      int at = top++;
-      for (; at > begin && stack[at - 1].squared < squared[i]; --at) {
-        stack[at] = stack[at - 1];
+    const SurfaceNode* node;
+  };
+  std::array<Level, most_levels> path;
+  int level = 0;
+  float most = limit();
+  path[0].node = nodes_.data();
+  int next = nearest_child(*path[0].node, q, most, path[0].squared);
+  for (;;) {
+    Level& at = path[level];
+    if (next < 0) {
+      if (level == 0) {
+        break;
       }
-      stack[at] = {squared[i], node.child[i]};
+      --level;
+      next = least_below(path[level].squared, most);
+      continue;
     }
+    at.squared[next] = std::numeric_limits<float>::infinity();
+    const Index child = at.node->child[next];
+    if ((child & leaf_bit) == 0) {
+      Level& below = path[++level];
+      below.node = &nodes_[child];
+      next = nearest_child(*below.node, q, most, below.squared);
+      continue;
+    }
+    const Vec3 point = nearest_on(triangles_[child & ~leaf_bit], p);
+    const double squared = (point - p).squaredNorm();
+    if (squared < bound) {
+      bound = squared;
+      best.point = point;
+      best.triangle = numbers_[child & ~leaf_bit];
+      most = limit();
+    }
+    next = least_below(at.squared, most);
   }
   if (bound < within * within) {
     best.distance = std::sqrt(bound);
