@@ -79,7 +79,15 @@ public:
     const double b = n.dot(corners_[1] - t[0]);
     const double c = n.dot(corners_[2] - t[0]);
     const double gap = std::max(std::min({a, b, c}), -std::max({a, b, c}));
-    return gap > 0 && gap * gap > distance * distance * n.squaredNorm();
+    if (gap > 0 && gap * gap > distance * distance * n.squaredNorm()) {
+      return true;
+    }
+    // Beyond a plane that touches this one where it is nearest to the other's middle.
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    const Vec3 at = nearest_on(corners_, middle);
+    const Vec3 away = middle - at;
+    const double least = std::min({away.dot(t[0] - at), away.dot(t[1] - at), away.dot(t[2] - at)});
+    return least > 0 && least * least > distance * distance * away.squaredNorm();
   }
 
   [[nodiscard]] std::span<const Axis> axes() const {
