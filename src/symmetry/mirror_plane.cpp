@@ -13,6 +13,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace cagewright {
@@ -111,15 +112,18 @@ public:
     return high - low;
   }
 
+  /// Of the plane's mirror image of p from the surface; above `most` it counts as that.
+  [[nodiscard]] double distance(const Plane& plane, const Vec3& p, double most) const {
+    const NearestPoint found = tree_.nearest(mirrored(plane, p), most);
+    return found ? found.distance : most;
+  }
+
   /// Distances above `most` count as that.
   [[nodiscard]] Errors errors(const Plane& plane, std::size_t count,
                               double most = std::numeric_limits<double>::infinity()) const {
     const std::span<const Vec3> at = points(count);
     std::vector<double> d(at.size());
-    parallel_for(0, at.size(), 64, [&](std::size_t i) {
-      const NearestPoint found = tree_.nearest(mirrored(plane, at[i]), most);
-      d[i] = found ? found.distance : most;
-    });
+    parallel_for(0, at.size(), 64, [&](std::size_t i) { d[i] = distance(plane, at[i], most); });
     Errors e;
     for (const double x : d) {
       e.mean += x / static_cast<double>(d.size());
@@ -332,6 +336,65 @@ std::vector<Vec3> normals_to_try(const Surface& surface) {
   return normals;
 }
 
+/// The best planes through the middle of the surface by a few points, each of a direction of its
+/// own; none if cancelled. Points are asked only until others are known to be better: what they
+/// have added up to is a lower bound of the error.
+std::vector<Judged> most_promising(const Surface& surface, const Progress& progress) {
+  struct Candidate {
+    Plane plane;
+    std::size_t number = 0;
+    std::size_t asked = 0; // of the points
+    double mean = 0;       // if the others' distances were 0
+
+    // Of those that are even so far, one that may get worse comes first.
+    bool operator<(const Candidate& other) const {
+      return std::tuple(mean, asked, number) < std::tuple(other.mean, other.asked, other.number);
+    }
+  };
+  std::vector<Candidate> candidates;
+  for (const Vec3& normal : normals_to_try(surface)) {
+    candidates.push_back({.plane = {normal, 0}, .number = candidates.size()});
+  }
+  const std::span<const Vec3> points = surface.points(few);
+  constexpr std::size_t batch = 16; // of candidates
+  constexpr std::size_t more = 20;  // points
+  static_assert(few % more == 0);
+  std::array<double, batch * more> distances;
+  std::vector<Judged> best;
+  while (best.size() < finalists && !candidates.empty()) {
+    if (progress.cancelled()) {
+      return {};
+    }
+    std::sort(candidates.begin(), candidates.end());
+    if (const Candidate first = candidates.front(); first.asked == points.size()) {
+      best.push_back({first.plane, {.mean = first.mean}});
+      std::erase_if(candidates, [&](const Candidate& other) {
+        constexpr double alike = 0.96; // cosine: 16 degrees
+        return other.number == first.number ||
+               std::abs(other.plane.normal.dot(first.plane.normal)) > alike;
+      });
+      continue;
+    }
+    std::vector<Candidate*> open;
+    for (Candidate& candidate : candidates) {
+      if (candidate.asked < points.size() && open.size() < batch) {
+        open.push_back(&candidate);
+      }
+    }
+    parallel_for(0, open.size() * more, 8, [&](std::size_t i) {
+      const Candidate& candidate = *open[i / more];
+      distances[i] = surface.distance(candidate.plane, points[candidate.asked + i % more], astray);
+    });
+    for (std::size_t i = 0; i < open.size() * more; ++i) {
+      open[i / more]->mean += distances[i] / static_cast<double>(points.size());
+    }
+    for (Candidate* candidate : open) {
+      candidate->asked += more;
+    }
+  }
+  return best;
+}
+
 /// Which of two planes that do equally well is preferred: across x, y, z, any other; the thin last.
 int rank(const Surface& surface, const Plane& plane) {
   Eigen::Index axis = 0;
@@ -371,29 +434,9 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
   if (!surface.usable()) {
     return std::nullopt;
   }
-  std::vector<Judged> candidates;
-  for (const Vec3& normal : normals_to_try(surface)) {
-    if (progress.cancelled()) {
-      return std::nullopt;
-    }
-    const Plane plane{normal, 0};
-    candidates.push_back({plane, surface.errors(plane, few, astray)});
-  }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Judged& a, const Judged& b) { return a.errors.mean < b.errors.mean; });
-  // The best, each of a direction of its own.
-  std::vector<Judged> best;
-  for (const Judged& candidate : candidates) {
-    constexpr double alike = 0.96; // cosine: 16 degrees
-    const bool fresh = std::none_of(best.begin(), best.end(), [&](const Judged& other) {
-      return std::abs(other.plane.normal.dot(candidate.plane.normal)) > alike;
-    });
-    if (fresh) {
-      best.push_back(candidate);
-    }
-    if (best.size() == finalists) {
-      break;
-    }
+  std::vector<Judged> best = most_promising(surface, progress);
+  if (best.empty()) {
+    return std::nullopt;
   }
   // Most of them are far from anything: a few points show it.
   for (Judged& candidate : best) {
