@@ -197,7 +197,9 @@ void SurfaceTree::build(std::span<const Corners> corners) {
     }
     Eigen::Index axis = 0;
     spread.sizes().maxCoeff(&axis);
-    const Index half = range.count / 2;
+    // In whole nodes of triangles: the lowest nodes are the most, and their slots are full.
+    const Index half =
+        range.count > width ? (range.count / 2 + width / 2) / width * width : range.count / 2;
     std::nth_element(order.begin() + range.first, order.begin() + range.first + half,
                      order.begin() + range.first + range.count, [&](Index a, Index b) {
                        return middles[a][axis] != middles[b][axis]
@@ -220,9 +222,10 @@ void SurfaceTree::build(std::span<const Corners> corners) {
     parallel_for(0, tasks.size(), 1, [&](std::size_t t) {
       std::array<Range, width>& ranges = parts[t];
       ranges[0] = tasks[t].range;
+      const Index enough = ranges[0].count > width ? width : 1;
       for (int step = width / 2; step > 0; step /= 2) {
         for (int i = 0; i < width; i += 2 * step) {
-          if (ranges[i].count > 1) {
+          if (ranges[i].count > enough) {
             ranges[i + step] = cut(ranges[i]);
           }
         }
