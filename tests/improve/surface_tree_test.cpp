@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -52,6 +53,45 @@ TEST(SurfaceTree, FindsTheNearestPoint) {
     EXPECT_NEAR(tree.nearest(p).distance, least, 1e-12);
     EXPECT_LE(tree.nearest(p, 10, 0.05).distance, 1.05 * least + 1e-12);
     EXPECT_EQ(std::isfinite(tree.nearest(p, 0.2).distance), least < 0.2);
+  }
+}
+
+TEST(SurfaceTree, HasEachTriangleHoweverManyThereAre) {
+  Random random(5);
+  for (const Index count : {1U, 7U, 8U, 9U, 12U, 15U, 16U, 17U, 63U, 64U, 65U, 100U, 513U, 700U}) {
+    TriangleMesh mesh; // small triangles far apart
+    for (Index t = 0; t < count; ++t) {
+      const Vec3 at(3 * (t % 9), 3 * (t / 9 % 9), 3 * (t / 81));
+      for (int i = 0; i < 3; ++i) {
+        mesh.positions.push_back(at + random_vector(random));
+      }
+      mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    }
+    const SurfaceTree tree(mesh);
+    for (Index t = 0; t < count; ++t) {
+      const Corners c = corners(mesh, t);
+      const SurfaceTree::Nearest found = tree.nearest((c[0] + c[1] + c[2]) / 3);
+      EXPECT_EQ(found.triangle, t) << count;
+      EXPECT_NEAR(found.distance, 0, 1e-12) << count;
+    }
+  }
+}
+
+TEST(SurfaceNode, FindsTheLastOfTheLeastLanes) {
+  Random random(6);
+  for (int trial = 0; trial < 500; ++trial) {
+    alignas(32) SurfaceNode::Lanes lanes;
+    for (float& lane : lanes) { // of few values: some are equal
+      const double x = std::floor(random.uniform(0, 5));
+      lane = x == 4 ? std::numeric_limits<float>::infinity() : static_cast<float>(x);
+    }
+    int last = 0;
+    for (int i = 1; i < SurfaceNode::width; ++i) {
+      last = lanes[i] <= lanes[last] ? i : last;
+    }
+    for (const float most : {0.0F, 1.0F, 2.5F, 1e30F}) {
+      EXPECT_EQ(least_below(lanes, most), lanes[last] < most ? last : -1);
+    }
   }
 }
 
