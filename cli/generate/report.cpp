@@ -203,6 +203,7 @@ nlohmann::json to_json(const BudgetCage& made, const CageMetrics& metrics) {
   j["cage"]["valid"] = true; // make_budget_cage() returns no other
   if (made.quads) {
     j["quads"] = to_json(*made.quads);
+    j["limb_rings"] = made.limb_rings;
   }
   j["symmetry"] = symmetry_json(made);
   j["times"] = to_json(made.times);
@@ -252,6 +253,9 @@ std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
   }
   text += symmetry_line(made);
   text += made.quads ? quads_line(*made.quads) : std::string();
+  if (!made.limb_rings.empty()) {
+    text += fmt::format("  {} rings of edges round limbs\n", made.limb_rings.size());
+  }
   if (made.clearance < made.clearance_asked) {
     text += fmt::format("  the boxes came nearer than the clearance asked for: {:.4f} % of the "
                         "diagonal was kept, not {:.4f} %\n",

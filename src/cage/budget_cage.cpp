@@ -3,6 +3,7 @@
 #include "cage/budget_pieces.h"
 #include "cage/budget_start.h"
 #include "cage/improve_to_gap.h"
+#include "cage/limb_rings.h"
 #include "cage/not_valid.h"
 #include "cage/pieces.h"
 #include "cage/quad_stage.h"
@@ -23,6 +24,7 @@ namespace {
 // Shares of the whole time, for the progress bar.
 constexpr double started = 0.1;
 constexpr double improved = 0.95;
+constexpr double limbs_found = 0.05; // of the improvement
 
 Result<TriangleMesh> start_from_boxes(TriangleView model, const BudgetCageOptions& options,
                                       BudgetCage& made, const Progress& progress) {
@@ -102,14 +104,21 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
   const Progress improving = progress.part(started, improved);
   Result<ValidityReport> validity = ValidityReport();
   if (options.quads) {
-    const MakeTriangles triangles = [&](int faces, double max_gap, const Progress& part_of_it) {
+    const LimbRings all_rings = limb_rings(*start, limb_cuts(model, improving.part(0, limbs_found)),
+                                           vertices_of(improvement));
+    watch.lap("limbs");
+    const MakeTriangles triangles = [&](int faces, double max_gap, const LimbRings& rings,
+                                        const Progress& part_of_it) {
       ImproveOptions own = improvement;
       own.faces = faces;
+      own.parts = rings.parts;
+      own.bands = rings.bands;
       return max_gap > 0 ? within_gap(*start, model, own, max_gap, made, part_of_it)
                          : improve(*start, model, own, part_of_it);
     };
-    Result<QuadStage> stage = make_quads_in_budget(triangles, model, options, improvement,
-                                                   diagonal(model.positions), improving);
+    Result<QuadStage> stage =
+        make_quads_in_budget(triangles, all_rings, model, options, improvement,
+                             diagonal(model.positions), improving.part(limbs_found, 1));
     if (!stage) {
       return stage.error();
     }
@@ -117,6 +126,7 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
     made.gap = stage->gap;
     made.quads = stage->made.report;
     made.polygons = std::move(stage->made.cage);
+    made.limb_rings = rings_between(*made.polygons, stage->made.parts);
     made.cage = to_triangle_mesh(*made.polygons);
     watch.lap("improve");
     validity =

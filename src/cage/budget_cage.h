@@ -56,6 +56,8 @@ struct BudgetCage {
   /// clearance, along any choice of diagonals.
   std::optional<PolygonMesh> polygons;
   std::optional<QuadReport> quads;
+  /// With quads: closed loops of edges round limbs, where they begin or bend, as vertices in order.
+  std::vector<std::vector<Index>> limb_rings;
   ImproveReport report;
   double clearance = 0; ///< that the improvement kept: less than asked for if the boxes came nearer
   double clearance_asked = 0;

@@ -201,6 +201,12 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
   for (std::size_t g = 0; g < cages.size(); ++g) {
     BudgetCage& cage = *cages[g];
     const double factor = diagonal(parts[g].mesh.positions) / whole;
+    for (std::vector<Index>& ring : cage.limb_rings) {
+      for (Index& v : ring) {
+        v += static_cast<Index>(all.polygons ? all.polygons->positions.size() : 0);
+      }
+      all.limb_rings.push_back(std::move(ring));
+    }
     all.cage = all.pieces == 0 ? std::move(cage.cage) : joined(all.cage, cage.cage);
     if (cage.polygons) {
       all.polygons = all.polygons ? joined_faces(*all.polygons, *cage.polygons) : cage.polygons;

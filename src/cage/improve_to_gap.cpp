@@ -130,6 +130,7 @@ private:
     options.faces = 0; // the limit of vertices sees to them
     // Coarser than a cage that is fine enough: from that one, which is in good shape already.
     const TriangleView start = fine_ ? TriangleView(fine_->improved.cage) : start_;
+    options.parts = fine_ ? std::span<const Index>(fine_->improved.parts) : options.parts;
     options.rounds = fine_ ? std::min(options.rounds, 1) : options.rounds;
     Result<Improved> improved = improve(start, model_, options, progress);
     if (!improved) {

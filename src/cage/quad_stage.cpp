@@ -68,16 +68,23 @@ Result<QuadStage> quads_of_blocks(TriangleView model, const QuadOptions& quads,
   return stage;
 }
 
-/// How many times as loose as quads made of triangles a cage of blocks may be: rings of edges are
-/// worth some room between cage and model. More if too few of the faces of pairs are quads.
-double most_loose(const QuadReport& pairs) {
-  return pairs.share < enough_quads ? 2 : 1.5;
-}
+/// How much more a cage of blocks may have than quads made of triangles. It is all quads, in strips
+/// all round: that is worth some room between cage and model, but less if the pairs have rings
+/// round limbs, and more if too few of their faces are quads.
+struct MostMore {
+  double loose = 1; ///< times as loose
+  /// Times the volume. Where blocks span two limbs their faces are near the model all the same; it
+  /// is the volume that shows it.
+  double volume = 1;
+};
 
-/// How many times their volume it may have. Where blocks span two limbs their faces are near the
-/// model all the same; it is the volume that shows it.
-double most_volume(const QuadReport& pairs) {
-  return pairs.share < enough_quads ? 1.25 : 1.08;
+MostMore most_more(const Quadrangulated& pairs) {
+  if (pairs.report.share < enough_quads) {
+    return {2, 1.25};
+  }
+  const bool has_rings = std::any_of(pairs.parts.begin(), pairs.parts.end(),
+                                     [&](Index part) { return part != pairs.parts.front(); });
+  return has_rings ? MostMore{1.25, 1.04} : MostMore{1.5, 1.08};
 }
 
 /// Of a half: up to its plane, seen from where what closes it there has no volume.
@@ -96,9 +103,10 @@ double gap_of(const PolygonMesh& mesh, const TriangleBvh& model, double toleranc
 }
 
 /// Triangles, and quads made of them.
-Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, TriangleView model,
-                               const BudgetCageOptions& options, const QuadOptions& quads,
-                               const ImproveOptions& budget, const Progress& progress) {
+Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, const LimbRings& rings,
+                               TriangleView model, const BudgetCageOptions& options,
+                               const QuadOptions& quads, const ImproveOptions& budget,
+                               const Progress& progress) {
   const double diagonal = quads.diagonal;
   const std::size_t sides = sides_of(budget);
   const auto most = static_cast<std::size_t>(budget.faces);
@@ -112,12 +120,14 @@ Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, TriangleView
     const Progress part =
         may_fail ? progress.part(static_cast<double>(k) / attempts, (k + 1.0) / attempts)
                  : progress;
-    Result<Improved> start = make_triangles(triangles, gap, part.part(0, triangles_made));
+    Result<Improved> start = make_triangles(triangles, gap, rings, part.part(0, triangles_made));
     if (!start) {
       return start.error();
     }
-    Result<Quadrangulated> made =
-        make_quads(start->cage, model, quads, part.part(triangles_made, 1));
+    QuadOptions own = quads;
+    own.parts = start->parts;
+    own.bands = rings.bands;
+    Result<Quadrangulated> made = make_quads(start->cage, model, own, part.part(triangles_made, 1));
     if (!made) {
       return made.error();
     }
@@ -159,10 +169,32 @@ Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, TriangleView
   return std::move(*best);
 }
 
+/// The same with the rings, or without if they do not leave enough vertices, or enough quads.
+Result<QuadStage> ringed_quads(const MakeTriangles& make_triangles, const LimbRings& rings,
+                               TriangleView model, const BudgetCageOptions& options,
+                               const QuadOptions& quads, const ImproveOptions& budget,
+                               const Progress& progress) {
+  constexpr double usual = 0.8; // of the time
+  Result<QuadStage> with =
+      paired_quads(make_triangles, rings, model, options, quads, budget, progress.part(0, usual));
+  const auto is_good = [](const QuadStage& stage) {
+    return stage.report.reached && stage.made.report.share >= enough_quads;
+  };
+  if (!with || rings.count == 0 || is_good(*with)) {
+    return with;
+  }
+  Result<QuadStage> without =
+      paired_quads(make_triangles, {}, model, options, quads, budget, progress.part(usual, 1));
+  const bool is_better = without && without->report.reached >= with->report.reached &&
+                         (is_good(*without) || without->report.reached > with->report.reached ||
+                          without->made.report.share > with->made.report.share);
+  return !without || is_better ? std::move(without) : std::move(with);
+}
+
 } // namespace
 
-Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, TriangleView model,
-                                       const BudgetCageOptions& options,
+Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, const LimbRings& rings,
+                                       TriangleView model, const BudgetCageOptions& options,
                                        const ImproveOptions& budget, double diagonal,
                                        const Progress& progress) {
   QuadOptions quads = options.quad_options;
@@ -174,7 +206,7 @@ Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, Tria
   // Of blocks nothing is known about the greatest gap.
   const bool try_blocks = options.max_gap == 0 && (budget.vertices > 0 || budget.faces > 0);
   constexpr double paired = 0.5; // of the time
-  Result<QuadStage> pairs = paired_quads(make_triangles, model, options, quads, budget,
+  Result<QuadStage> pairs = ringed_quads(make_triangles, rings, model, options, quads, budget,
                                          progress.part(0, try_blocks ? paired : 1));
   if (!pairs || !try_blocks) {
     return pairs;
@@ -184,8 +216,8 @@ Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, Tria
   const auto loose = [&](const QuadStage& stage) {
     return looseness(stage.made.cage, surface, all, quads);
   };
-  const double most = most_loose(pairs->made.report) * loose(*pairs);
-  const double loosest = pairs->report.reached ? most : 0; // 0: any
+  const MostMore most = most_more(pairs->made);
+  const double loosest = pairs->report.reached ? most.loose * loose(*pairs) : 0; // 0: any
   const Result<QuadStage> blocks =
       quads_of_blocks(model, quads, budget, loosest, progress.part(paired, 1));
   if (!blocks && blocks.error().code == ErrorCode::cancelled) {
@@ -194,10 +226,9 @@ Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, Tria
   const auto volume = [&](const QuadStage& stage) {
     return volume_of(stage.made.cage, budget.extent);
   };
-  const bool is_better =
-      blocks && blocks->report.reached &&
-      (loosest == 0 || (loose(*blocks) <= loosest &&
-                        volume(*blocks) <= most_volume(pairs->made.report) * volume(*pairs)));
+  const bool is_better = blocks && blocks->report.reached &&
+                         (loosest == 0 || (loose(*blocks) <= loosest &&
+                                           volume(*blocks) <= most.volume * volume(*pairs)));
   return is_better ? blocks : pairs;
 }
 

@@ -2,6 +2,7 @@
 
 #include "cage/budget_start.h"
 #include "cage/improve_to_gap.h"
+#include "cage/limb_rings.h"
 #include "cage/not_valid.h"
 #include "cage/quad_stage.h"
 #include "mesh/measures.h"
@@ -21,6 +22,7 @@ namespace {
 // Shares of the whole time, for the progress bar.
 constexpr double started = 0.15;
 constexpr double improved = 0.95;
+constexpr double limbs_found = 0.05; // of the improvement
 
 /// Of the diagonal: a model this near to its mirror image is enclosed with it by any box.
 constexpr double same = 1e-6;
@@ -185,13 +187,21 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
   // What is done to the faces of the half is done to both.
   Result<ValidityReport> validity = ValidityReport();
   if (options.quads) {
-    const MakeTriangles triangles = [&](int faces, double, const Progress& part) {
+    const TriangleMesh whole_model = in_frame(model, task.frame);
+    const LimbRings all_rings = limb_rings(
+        *start, limb_cuts(whole_model, improving.part(0, limbs_found)), vertices_of(improvement));
+    watch.lap("limbs");
+    const MakeTriangles triangles = [&](int faces, double, const LimbRings& rings,
+                                        const Progress& part) {
       ImproveOptions own = improvement;
       own.faces = faces;
+      own.parts = rings.parts;
+      own.bands = rings.bands;
       return improve(*start, task.half.mesh, own, part);
     };
-    Result<QuadStage> stage = make_quads_in_budget(triangles, task.half.mesh, options, improvement,
-                                                   task.diagonal, improving);
+    Result<QuadStage> stage =
+        make_quads_in_budget(triangles, all_rings, task.half.mesh, options, improvement,
+                             task.diagonal, improving.part(limbs_found, 1));
     if (!stage) {
       return stage.error();
     }
@@ -199,6 +209,9 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
     watch.lap("improve");
     Whole<PolygonMesh> whole = join_halves(stage->made.cage, task.frame);
     made.quads = report_of(whole.mesh);
+    std::vector<Index> parts = stage->made.parts; // of both halves
+    parts.insert(parts.end(), stage->made.parts.begin(), stage->made.parts.end());
+    made.limb_rings = rings_between(whole.mesh, parts);
     validity = validate_cage(whole.mesh, model, {.first_only = true}, checking);
     made.cage = to_triangle_mesh(whole.mesh);
     made.polygons = std::move(whole.mesh);

@@ -20,10 +20,14 @@ Triangle with_corner(Triangle t, Index from, Index to) {
 
 } // namespace
 
-CageMesh::CageMesh(TriangleView mesh, CageExtent extent)
+CageMesh::CageMesh(TriangleView mesh, CageExtent extent, std::span<const Index> parts,
+                   std::span<const SeamBand> bands)
     : extent_(extent), positions_(mesh.positions.begin(), mesh.positions.end()),
       on_plane_(mesh.positions.size(), 0), faces_(mesh.triangles.begin(), mesh.triangles.end()),
-      around_(mesh.positions.size()) {
+      parts_(parts.begin(), parts.end()), around_(mesh.positions.size()) {
+  if (!parts_.empty()) {
+    bands_.assign(bands.begin(), bands.end());
+  }
   face_count_ = faces_.size();
   for (Index f = 0; f < face_end(); ++f) {
     for (const Index v : faces_[f]) {
@@ -117,10 +121,82 @@ std::optional<Patch> CageMesh::collapse(Index u, Index v) const {
   patch.gone = v;
   patch.position =
       on_plane(u) && !on_plane(v) ? positions_[u] : Vec3((positions_[u] + positions_[v]) / 2);
-  if (is_half() && !keeps_halves_apart(patch)) {
+  if ((is_half() && !keeps_halves_apart(patch)) || !keeps_seams(u, v)) {
     return std::nullopt;
   }
   return patch;
+}
+
+// Whether the seams are loops as before when u and v are one.
+bool CageMesh::keeps_seams(Index u, Index v) const {
+  if (parts_.empty() || !is_on_seam(u) || !is_on_seam(v)) {
+    return true;
+  }
+  return is_seam(u, v) && seam_length(u, v) > least_seam;
+}
+
+bool CageMesh::is_on_seam(Index v) const {
+  return std::any_of(around_[v].begin(), around_[v].end(),
+                     [&](Index f) { return parts_[f] != parts_[around_[v].front()]; });
+}
+
+const SeamBand* CageMesh::band_of(Index v) const {
+  if (bands_.empty() || !is_on_seam(v)) {
+    return nullptr;
+  }
+  Index part = 0;
+  for (const Index f : around_[v]) {
+    part = std::max(part, parts_[f]);
+  }
+  return &bands_[part];
+}
+
+const SeamBand* CageMesh::band_of(const Patch& patch) const {
+  if (bands_.empty() || patch.vertex == no_index) {
+    return nullptr;
+  }
+  if (patch.vertex == vertex_end()) { // on an edge
+    const Index a = parts_[patch.removed.front()];
+    const Index b = parts_[patch.removed.back()];
+    return a != b ? &bands_[std::max(a, b)] : nullptr;
+  }
+  const SeamBand* band = band_of(patch.vertex);
+  return band == nullptr && patch.gone != no_index ? band_of(patch.gone) : band;
+}
+
+bool CageMesh::is_seam(Index a, Index b) const {
+  const Index left = face_left_of(a, b);
+  const Index right = face_left_of(b, a);
+  return left != no_index && right != no_index && parts_[left] != parts_[right];
+}
+
+// How many edges of the whole cage the seam has that the edge a b is of.
+std::size_t CageMesh::seam_length(Index a, Index b) const {
+  const auto next_after = [&](Index from, Index at) {
+    for (const Index v : neighbors(at)) {
+      if (v != from && is_seam(at, v)) {
+        return v;
+      }
+    }
+    return no_index; // at the boundary of a half
+  };
+  const auto walk = [&](Index from, Index at) {
+    std::size_t edges = 0;
+    while (at != no_index && at != a) {
+      from = std::exchange(at, next_after(from, at));
+      edges += at != no_index ? 1 : 0;
+    }
+    return std::pair(edges, at == a);
+  };
+  const auto [onward, is_closed] = walk(a, b);
+  if (is_closed) {
+    return onward + 1;
+  }
+  std::size_t back = 0;
+  for (Index from = b, at = a; at != no_index; ++back) {
+    from = std::exchange(at, next_after(from, at));
+  }
+  return 2 * (onward + back); // with the edge a b, and without the step off the boundary
 }
 
 // The faces round patch.vertex, once made: none lies in the plane, no edge of two faces joins two
@@ -157,7 +233,7 @@ bool CageMesh::keeps_halves_apart(const Patch& patch) const {
 std::optional<Patch> CageMesh::flip(Index a, Index b) const {
   const Index left = face_left_of(a, b);
   const Index right = face_left_of(b, a);
-  if (left == no_index || right == no_index) {
+  if (left == no_index || right == no_index || part(left) != part(right)) {
     return std::nullopt;
   }
   const Index c = corner_opposite(left, a, b);
@@ -200,7 +276,25 @@ void CageMesh::detach(Index f) {
   faces_[f] = {no_index, no_index, no_index};
 }
 
+// The parts of the patch's new faces: they come of the old ones in order.
+std::vector<Index> CageMesh::parts_after(const Patch& patch) const {
+  std::vector<Index> parts;
+  if (parts_.empty()) {
+    return parts;
+  }
+  const bool is_split = patch.vertex == vertex_end();
+  for (const Index f : patch.removed) {
+    const bool ends = patch.gone != no_index && has_corner(faces_[f], patch.gone) &&
+                      has_corner(faces_[f], patch.vertex);
+    if (!ends) {
+      parts.insert(parts.end(), is_split ? 2 : 1, parts_[f]);
+    }
+  }
+  return parts;
+}
+
 std::vector<Index> CageMesh::apply(const Patch& patch) {
+  const std::vector<Index> parts = parts_after(patch);
   for (const Index f : patch.removed) {
     detach(f);
   }
@@ -221,6 +315,10 @@ std::vector<Index> CageMesh::apply(const Patch& patch) {
     const Index f = i < patch.removed.size() ? patch.removed[i] : face_end();
     if (f == face_end()) {
       faces_.emplace_back();
+      parts_.resize(parts_.empty() ? 0 : faces_.size());
+    }
+    if (!parts_.empty()) {
+      parts_[f] = parts[i];
     }
     faces_[f] = patch.added[i];
     for (const Index v : patch.added[i]) {
@@ -249,6 +347,16 @@ TriangleMesh CageMesh::compact() const {
     }
   }
   return mesh;
+}
+
+std::vector<Index> CageMesh::compact_parts() const {
+  std::vector<Index> parts;
+  for (Index f = 0; f < face_end(); ++f) {
+    if (has_face(f)) {
+      parts.push_back(part(f));
+    }
+  }
+  return parts;
 }
 
 Corners corners_of(const CageMesh& cage, Index face) {

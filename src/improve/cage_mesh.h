@@ -4,12 +4,14 @@
 #pragma once
 
 #include "improve/cage_extent.h"
+#include "improve/seam_band.h"
 #include "improve/surface_tree.h"
 #include "mesh/triangle_mesh.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace cagewright {
@@ -32,13 +34,24 @@ struct Patch {
   Index gone = no_index; ///< the vertex that no face uses any more
 };
 
+/// Edges of a seam, at least: of a whole cage. So many can be the border of a quad.
+inline constexpr std::size_t least_seam = 4;
+
 /// The directed edges (a, b) round a patch to be filled by the triangles (vertex, a, b), in order.
 using Ring = std::vector<std::array<Index, 2>>;
 
 /// Vertices and faces keep their numbers while they live; numbers of the dead are not reused.
+///
+/// Its faces may belong to parts. The edges between two parts, the seams, are then loops that no
+/// two of have a vertex in common, and so it stays: changes that would tear a seam, pinch it, make
+/// it shorter than `least_seam` edges, or join it to another are not offered. A seam may have a
+/// band that its vertices are to stay in.
 class CageMesh {
 public:
-  explicit CageMesh(TriangleView mesh, CageExtent extent = CageExtent::whole);
+  /// \param parts  that the faces belong to; empty: all to one
+  /// \param bands  by part: of the seam between it and parts of smaller numbers; or empty
+  explicit CageMesh(TriangleView mesh, CageExtent extent = CageExtent::whole,
+                    std::span<const Index> parts = {}, std::span<const SeamBand> bands = {});
 
   [[nodiscard]] bool is_half() const { return extent_ == CageExtent::half; }
 
@@ -78,6 +91,14 @@ public:
     return face_left_of(a, b) != no_index || face_left_of(b, a) != no_index;
   }
 
+  /// The part that face f belongs to.
+  [[nodiscard]] Index part(Index f) const { return parts_.empty() ? 0 : parts_[f]; }
+
+  /// The band of the seam that v is on, or null.
+  [[nodiscard]] const SeamBand* band_of(Index v) const;
+  /// The band that the patch's vertex has to be in, or null.
+  [[nodiscard]] const SeamBand* band_of(const Patch& patch) const;
+
   /// The corner of face f that is neither a nor b.
   [[nodiscard]] Index corner_opposite(Index f, Index a, Index b) const;
 
@@ -86,11 +107,11 @@ public:
 
   /// v merged into u, or u into v if only v is on the plane. None if the result would not be
   /// manifold (the link condition: u and v have more common neighbours than the edge has faces, or
-  /// the mesh is a tetrahedron), or not the half of a manifold mesh.
+  /// the mesh is a tetrahedron), or not the half of a manifold mesh, or lose a seam.
   [[nodiscard]] std::optional<Patch> collapse(Index u, Index v) const;
 
   /// The edge a b of two triangles exchanged for the other diagonal. None if that exists already,
-  /// or if the edge has one triangle only.
+  /// if the edge has one triangle only, or if it is of a seam.
   [[nodiscard]] std::optional<Patch> flip(Index a, Index b) const;
 
   /// A new vertex on the edge a b, which is on the plane if the edge is.
@@ -104,15 +125,24 @@ public:
 
   /// The living, renumbered in order.
   [[nodiscard]] TriangleMesh compact() const;
+  /// The parts of its faces, in the same order.
+  [[nodiscard]] std::vector<Index> compact_parts() const;
 
 private:
   void detach(Index f);
   [[nodiscard]] bool keeps_halves_apart(const Patch& patch) const;
+  [[nodiscard]] bool keeps_seams(Index u, Index v) const;
+  [[nodiscard]] bool is_on_seam(Index v) const;
+  [[nodiscard]] bool is_seam(Index a, Index b) const;
+  [[nodiscard]] std::size_t seam_length(Index a, Index b) const;
+  [[nodiscard]] std::vector<Index> parts_after(const Patch& patch) const;
 
   CageExtent extent_;
   std::vector<Vec3> positions_;
   std::vector<std::uint8_t> on_plane_;
   std::vector<Triangle> faces_;
+  std::vector<Index> parts_; // of the faces; empty: all one
+  std::vector<SeamBand> bands_;
   std::vector<std::vector<Index>> around_;
   std::size_t vertex_count_ = 0;
   std::size_t face_count_ = 0;

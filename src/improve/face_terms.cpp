@@ -80,6 +80,15 @@ void KeepClear::add_point(const Triangle& vertices, const std::array<double, 3>&
   }
 }
 
+void add_band(const SeamBand& band, const Vec3& p, Index v, double unit,
+              std::vector<BlockConstraint>& constraints) {
+  const double h = band.height(p);
+  for (const double sign : {1.0, -1.0}) {
+    const double room = std::max(0.0, band.half_width + sign * h) / unit;
+    constraints.push_back({{v, v, v}, {1, 0, 0}, sign * band.normal, -room});
+  }
+}
+
 std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
   const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
   const double squared = n.squaredNorm();

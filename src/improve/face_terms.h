@@ -4,6 +4,7 @@
 
 #include "improve/block_program.h"
 #include "improve/objective.h"
+#include "improve/seam_band.h"
 
 #include <array>
 #include <limits>
@@ -48,6 +49,11 @@ struct KeepClear {
   void add_point(const Triangle& vertices, const std::array<double, 3>& share, const Vec3& p,
                  std::vector<BlockConstraint>& constraints) const;
 };
+
+/// Half spaces that keep vertex v of a program, now at p, in the band, or let it go no further off
+/// it. \param unit  the length that the program's steps are measured in
+void add_band(const SeamBand& band, const Vec3& p, Index v, double unit,
+              std::vector<BlockConstraint>& constraints);
 
 /// The shares of the corners of t in the point of its plane below p.
 std::array<double, 3> barycentric(const Vec3& p, const Corners& t);

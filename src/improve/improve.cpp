@@ -56,7 +56,8 @@ class Improvement {
 public:
   Improvement(TriangleView start, TriangleView model, const ImproveOptions& options)
       : options_(options), surface_(model, options.diagonal),
-        guard_(surface_, options.clearance * surface_.diagonal), cage_(start, options.extent),
+        guard_(surface_, options.clearance * surface_.diagonal),
+        cage_(start, options.extent, options.parts, options.bands),
         budget_(vertex_budget(cage_.mesh, options)),
         objective_(surface_, weights_for(start, model, options, budget_)),
         most_valence_(static_cast<std::size_t>(options.most_valence)) {}
@@ -83,6 +84,9 @@ public:
       return Error::cancelled();
     }
     result.cage = cage_.mesh.compact();
+    if (!options_.parts.empty()) {
+      result.parts = cage_.mesh.compact_parts();
+    }
     result.report.refine_seconds = seconds_since(middle);
     const double sides = cage_.mesh.is_half() ? 2 : 1;
     result.report.objective = sides * value / std::pow(surface_.diagonal, 3);
@@ -404,6 +408,14 @@ Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOp
                                                 " densities, but the model has " +
                                                 std::to_string(model.positions.size()) +
                                                 " vertices"};
+  }
+  if (!options.parts.empty() && options.parts.size() != start.triangles.size()) {
+    return Error{ErrorCode::invalid_option, "there must be one part for each face of the start"};
+  }
+  if (!options.bands.empty() &&
+      std::any_of(options.parts.begin(), options.parts.end(),
+                  [&](Index part) { return part >= options.bands.size(); })) {
+    return Error{ErrorCode::invalid_option, "there must be a band for each part"};
   }
   if (!std::all_of(options.density.begin(), options.density.end(),
                    [](double d) { return d > 0 && std::isfinite(d); })) {

@@ -5,10 +5,12 @@
 #include "core/progress.h"
 #include "core/result.h"
 #include "improve/cage_extent.h"
+#include "improve/seam_band.h"
 #include "mesh/triangle_mesh.h"
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace cagewright {
 
@@ -42,6 +44,12 @@ struct ImproveOptions {
   double max_gap = 0;
   /// What lengths are fractions of. 0: the diagonal of the model's box.
   double diagonal = 0;
+  /// The part that each face of the start belongs to, or empty. The edges between two parts, which
+  /// have to be loops without common vertices, stay loops of edges of the cage, with four of them
+  /// at least: rings round limbs. The view must live as long as the call.
+  std::span<const Index> parts = {};
+  /// By part: where the loop stays that separates it from parts of smaller numbers. Or empty.
+  std::span<const SeamBand> bands = {};
 };
 
 struct ImproveReport {
@@ -54,6 +62,7 @@ struct ImproveReport {
 
 struct Improved {
   TriangleMesh cage;
+  std::vector<Index> parts; ///< of its faces, if those of the start have some
   ImproveReport report;
 };
 

@@ -248,6 +248,13 @@ std::optional<Vec3> solve(const Quadratic& q, const Vec3& origin,
   return step ? std::optional<Vec3>(origin + *step) : std::nullopt;
 }
 
+// The band's two half spaces, for places relative to the origin.
+void add_band(const SeamBand& band, const Vec3& origin, std::vector<HalfSpace>& spaces) {
+  const double middle = band.normal.dot(band.point - origin);
+  spaces.push_back({band.normal, band.half_width + middle});
+  spaces.push_back({-band.normal, band.half_width - middle});
+}
+
 } // namespace
 
 std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& objective,
@@ -258,6 +265,10 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
     const double off_plane = plane_gap * guard.clearance();
     patch.position.x() = std::max(patch.position.x(), off_plane);
     spaces.push_back({-Vec3::UnitX(), -off_plane});
+  }
+  if (const SeamBand* band = cage.band_of(patch)) {
+    patch.position = band->nearest(patch.position);
+    add_band(*band, Vec3::Zero(), spaces);
   }
   std::optional<Vec3> best;
   Quadratic quadratic = fan.objective();
@@ -327,6 +338,9 @@ std::optional<Vec3> place_outside_patch(const CageMesh& cage, const Patch& patch
       }
     }
     outside.push_back({-Vec3::UnitX(), origin.x() - least});
+  }
+  if (const SeamBand* band = cage.band_of(patch)) {
+    add_band(*band, origin, outside);
   }
   // The volume decides; the distance from the planes of the old faces keeps the vertex near.
   const double size = std::sqrt(area);

@@ -158,6 +158,9 @@ private:
         constraints.push_back({{v, v, v}, {1, 0, 0}, Vec3::Unit(k), -down / unit});
         constraints.push_back({{v, v, v}, {1, 0, 0}, -Vec3::Unit(k), -reach / unit});
       }
+      if (const SeamBand* band = cage_.mesh.band_of(moving_[v])) {
+        add_band(*band, at[moving_[v]], v, unit, constraints);
+      }
     }
     // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
     const double slack = towards_goal ? 1e-6 : 0.05 * guard_.clearance() / unit;

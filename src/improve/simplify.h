@@ -32,8 +32,9 @@ struct SimplifyOptions {
 
 /// The cage under change, and what has to be kept beside it.
 struct WorkingCage {
-  explicit WorkingCage(TriangleView start, CageExtent extent = CageExtent::whole)
-      : mesh(start, extent), boxes(mesh) {}
+  explicit WorkingCage(TriangleView start, CageExtent extent = CageExtent::whole,
+                       std::span<const Index> parts = {}, std::span<const SeamBand> bands = {})
+      : mesh(start, extent, parts, bands), boxes(mesh) {}
 
   /// Makes the change and keeps the boxes up to date. \returns the new faces
   std::vector<Index> apply(const Patch& patch);

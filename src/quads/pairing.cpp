@@ -24,7 +24,8 @@ std::vector<PairOfTriangles> neighboring_triangles(const QuadCage& cage) {
     const CageFace& t = cage.face(f);
     for (int i = 0; i < t.size && t.size == 3; ++i) {
       const Index other = cage.face_left_of(t[i + 1], t[i]);
-      if (other == no_index || other < f || cage.face(other).is_quad()) {
+      if (other == no_index || other < f || cage.face(other).is_quad() ||
+          cage.face(other).part != t.part) {
         continue;
       }
       const CageFace& s = cage.face(other);
@@ -32,7 +33,7 @@ std::vector<PairOfTriangles> neighboring_triangles(const QuadCage& cage) {
       while (s[k] == t[i] || s[k] == t[i + 1]) {
         ++k;
       }
-      pairs.push_back({f, other, CageFace::quad(t[i], s[k], t[i + 1], t[i + 2])});
+      pairs.push_back({f, other, CageFace::quad(t[i], s[k], t[i + 1], t[i + 2]).of_part(t.part)});
     }
   }
   return pairs;

@@ -15,12 +15,13 @@ FaceParts::FaceParts(const CageFace& face, Of which) {
   }
 }
 
-QuadCage::QuadCage(TriangleView mesh)
+QuadCage::QuadCage(TriangleView mesh, std::span<const Index> parts, std::span<const SeamBand> bands)
     : positions_(mesh.positions.begin(), mesh.positions.end()), around_(mesh.positions.size()),
-      on_border_(mesh.positions.size(), 0) {
+      on_border_(mesh.positions.size(), 0), bands_(bands.begin(), bands.end()) {
   std::vector<CageFace> faces;
-  for (const Triangle& t : mesh.triangles) {
-    faces.push_back(CageFace::triangle(t[0], t[1], t[2]));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    faces.push_back(CageFace::triangle(t[0], t[1], t[2]).of_part(parts.empty() ? 0 : parts[i]));
   }
   replace({}, faces);
   find_border();
@@ -60,6 +61,16 @@ Index QuadCage::face_left_of(Index a, Index b) const {
     }
   }
   return no_index;
+}
+
+const SeamBand* QuadCage::band_of(Index v) const {
+  Index least = no_index;
+  Index most = 0;
+  for (const Index f : around_[v]) {
+    least = std::min(least, faces_[f].part);
+    most = std::max(most, faces_[f].part);
+  }
+  return !bands_.empty() && least < most ? &bands_[most] : nullptr;
 }
 
 void QuadCage::replace(std::span<const Index> removed, std::span<const CageFace> added) {
@@ -108,6 +119,16 @@ PolygonMesh QuadCage::to_polygons() const {
     }
   }
   return mesh;
+}
+
+std::vector<Index> QuadCage::parts() const {
+  std::vector<Index> parts;
+  for (const CageFace& face : faces_) {
+    if (face.size != 0) {
+      parts.push_back(face.part);
+    }
+  }
+  return parts;
 }
 
 } // namespace cagewright

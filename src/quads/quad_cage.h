@@ -19,9 +19,10 @@ struct CageFace {
   int size = 0;                   ///< 3 or 4; 0: there is no such face
   /// A quad that is to be: so far it may be cut along its first diagonal only.
   bool tentative = false;
+  Index part = 0; ///< of the cage: the sides between faces of different parts stay
 
-  static CageFace triangle(Index a, Index b, Index c) { return {{a, b, c, no_index}, 3, false}; }
-  static CageFace quad(Index a, Index b, Index c, Index d) { return {{a, b, c, d}, 4, false}; }
+  static CageFace triangle(Index a, Index b, Index c) { return {{a, b, c, no_index}, 3}; }
+  static CageFace quad(Index a, Index b, Index c, Index d) { return {{a, b, c, d}, 4}; }
 
   [[nodiscard]] bool is_quad() const { return size == 4; }
   [[nodiscard]] std::span<const Index> span() const {
@@ -31,8 +32,10 @@ struct CageFace {
   [[nodiscard]] Index operator[](int i) const { return corners[i % size]; }
   /// The same quad, begun at another corner.
   [[nodiscard]] CageFace turned(int by) const {
-    return {{(*this)[by], (*this)[by + 1], (*this)[by + 2], (*this)[by + 3]}, size, tentative};
+    return {
+        {(*this)[by], (*this)[by + 1], (*this)[by + 2], (*this)[by + 3]}, size, tentative, part};
   }
+  [[nodiscard]] CageFace of_part(Index p) const { return {corners, size, tentative, p}; }
   [[nodiscard]] bool has(Index v) const {
     for (int i = 0; i < size; ++i) {
       if (corners[i] == v) {
@@ -60,7 +63,10 @@ struct FaceParts {
 /// half of a symmetric cage.
 class QuadCage {
 public:
-  explicit QuadCage(TriangleView mesh);
+  /// \param parts  that the faces belong to; empty: all to one
+  /// \param bands  by part: where its border to parts of smaller numbers stays; or empty
+  explicit QuadCage(TriangleView mesh, std::span<const Index> parts = {},
+                    std::span<const SeamBand> bands = {});
   /// Of triangles and quads.
   explicit QuadCage(const PolygonMesh& mesh);
 
@@ -80,6 +86,9 @@ public:
     return (face_left_of(a, b) == no_index) != (face_left_of(b, a) == no_index);
   }
 
+  /// The band of the border between parts that v is on, or null.
+  [[nodiscard]] const SeamBand* band_of(Index v) const;
+
   /// Numbers of the new faces follow face_end(). The border does not change.
   void replace(std::span<const Index> removed, std::span<const CageFace> added);
 
@@ -93,6 +102,8 @@ public:
 
   /// All faces, in the order of their numbers, over the vertices that they use, in order.
   [[nodiscard]] PolygonMesh to_polygons() const;
+  /// The parts of its faces, in the same order.
+  [[nodiscard]] std::vector<Index> parts() const;
 
 private:
   void find_border();
@@ -101,6 +112,7 @@ private:
   std::vector<CageFace> faces_;
   std::vector<std::vector<Index>> around_;
   std::vector<std::uint8_t> on_border_; // by vertex
+  std::vector<SeamBand> bands_;
   bool has_border_ = false;
 };
 

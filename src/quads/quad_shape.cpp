@@ -62,9 +62,10 @@ void split_unfit(QuadCage& cage, const QuadLimits& limits) {
         const bool second =
             !face.tentative && (q[1] - q[3]).squaredNorm() < (q[0] - q[2]).squaredNorm();
         const int k = second ? 1 : 0;
-        cage.replace(std::array{f},
-                     std::array{CageFace::triangle(face[k], face[k + 1], face[k + 2]),
-                                CageFace::triangle(face[k], face[k + 2], face[k + 3])});
+        cage.replace(
+            std::array{f},
+            std::array{CageFace::triangle(face[k], face[k + 1], face[k + 2]).of_part(face.part),
+                       CageFace::triangle(face[k], face[k + 2], face[k + 3]).of_part(face.part)});
       }
     }
   }

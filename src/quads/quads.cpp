@@ -122,7 +122,7 @@ void turn_quads(QuadCage& cage) {
         return (cage.positions()[face[i]] - cage.positions()[face[i + 2]]).squaredNorm();
       };
       if (face.is_quad() && length(1) < length(0)) {
-        face = CageFace::quad(face[1], face[2], face[3], face[0]);
+        face = face.turned(1);
       }
     }
   }
@@ -207,7 +207,10 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   if (!options.density.empty() && options.density.size() != model.positions.size()) {
     return Error{ErrorCode::invalid_option, "there must be one density for each model vertex"};
   }
-  QuadCage cage(start);
+  if (!options.parts.empty() && options.parts.size() != start.triangles.size()) {
+    return Error{ErrorCode::invalid_option, "there must be one part for each face"};
+  }
+  QuadCage cage(start, options.parts, options.bands);
   if (!border_is_in_plane(cage)) {
     return Error{ErrorCode::invalid_cage, "the cage to make quads of is open"};
   }
@@ -231,6 +234,7 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   turn_quads(cage);
   Quadrangulated result;
   result.cage = cage.to_polygons();
+  result.parts = cage.parts();
   result.report = report_of(result.cage);
   return result;
 }

@@ -4,10 +4,12 @@
 
 #include "core/progress.h"
 #include "core/result.h"
+#include "improve/seam_band.h"
 #include "mesh/polygon_mesh.h"
 #include "quads/quad_shape.h"
 
 #include <span>
+#include <vector>
 
 namespace cagewright {
 
@@ -22,6 +24,11 @@ struct QuadOptions {
   double diagonal = 0;
   /// Where the cage is to be finer: see ImproveOptions. The view must live as long as the call.
   std::span<const double> density = {};
+  /// The part that each face of the cage to start from belongs to, or empty. The edges between two
+  /// parts stay edges. The view must live as long as the call.
+  std::span<const Index> parts = {};
+  /// By part: where its border to parts of smaller numbers stays. Or empty.
+  std::span<const SeamBand> bands = {};
   double square = 40;  ///< weight of large gaps: see ObjectiveWeights
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
 };
@@ -48,6 +55,7 @@ struct Quadrangulated {
   /// Triangles and quads. Cut along any choice of diagonals it is valid, and keeps the clearance.
   /// The first diagonal of each quad is the one along which triangulate() cuts it.
   PolygonMesh cage;
+  std::vector<Index> parts; ///< that its faces belong to: see QuadOptions
   QuadReport report;
 };
 

@@ -257,6 +257,9 @@ private:
         constraints.push_back({{v, v, v}, {1, 0, 0}, Vec3::Unit(k), -room});
         constraints.push_back({{v, v, v}, {1, 0, 0}, -Vec3::Unit(k), -room});
       }
+      if (const SeamBand* band = cage_.band_of(living_[v])) {
+        add_band(*band, at[living_[v]], v, unit, constraints);
+      }
     }
     // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
     const double soft = 0.05 * guard_.clearance() / unit;

@@ -157,7 +157,7 @@ private:
       const CageFace& face = cage_.face(f);
       for (int i = 0; i < face.size; ++i) {
         const Index other = cage_.face_left_of(face[i + 1], face[i]);
-        if (other != no_index) {
+        if (other != no_index && cage_.face(other).part == face.part) {
           result.push_back(other);
         }
       }
@@ -305,7 +305,7 @@ private:
     const TilingTable& table = tilings_[ring.size() - 4];
     std::vector<Known> known(table.faces.size());
     for (std::size_t k = 0; k < known.size(); ++k) {
-      known[k].face = table.faces[k];
+      known[k].face = table.faces[k].of_part(cage_.face(region.front()).part);
       for (int i = 0; i < known[k].face.size; ++i) {
         known[k].face.corners[i] = ring[table.faces[k].corners[i]];
       }

@@ -1,0 +1,389 @@
+#include "cage/limb_rings.h"
+
+#include "cage/decompose.h"
+#include "core/parallel.h"
+#include "improve/cage_mesh.h"
+#include "improve/objective.h"
+#include "mesh/edge_chains.h"
+#include "mesh/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace cagewright {
+namespace {
+
+using Edge = std::array<Index, 2>;
+
+struct Plane {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitX();
+};
+
+/// A ring that might be, with the limb beyond it.
+struct Candidate {
+  std::vector<Index> vertices;
+  std::vector<Index> limb; ///< faces
+  Vec3 center = Vec3::Zero();
+  double width = 0;   ///< the diameter of a circle of the ring's area
+  double length = 0;  ///< of a limb as wide as the ring, and of its volume; in widths
+  double surface = 0; ///< the limb's part of the whole surface
+  int copies = 1;     ///< in the whole cage
+  SeamBand band;
+};
+
+class Finder {
+public:
+  explicit Finder(TriangleView start) : start_(start), mesh_(start) {
+    for (Index f = 0; f < mesh_.face_end(); ++f) {
+      std::array<Index, 3>& beside = neighbors_.emplace_back();
+      const Triangle& t = mesh_.face(f);
+      for (int i = 0; i < 3; ++i) {
+        beside[i] = mesh_.face_left_of(t[(i + 1) % 3], t[i]);
+        if (beside[i] == no_index) {
+          is_half_ = true;
+          origin_ = start.positions[t[i]];
+        }
+      }
+    }
+    for (Index f = 0; f < mesh_.face_end(); ++f) {
+      all_.push_back(f);
+    }
+    area_ = area_of(all_);
+    room_ = 0.04 * diagonal(start.positions); // between the cage and the boxes of the cuts
+  }
+
+  /// The rings along one plane that have a limb beyond them.
+  ///
+  /// \param box  that they must lie in, but for the room between boxes and cage; null: anywhere
+  [[nodiscard]] std::vector<Candidate> candidates(const Plane& plane,
+                                                  const OrientedBox* box) const {
+    std::vector<Candidate> candidates;
+    std::vector<std::uint8_t> above(start_.positions.size());
+    for (std::size_t v = 0; v < above.size(); ++v) {
+      above[v] = (start_.positions[v] - plane.point).dot(plane.normal) > 0 ? 1 : 0;
+    }
+    // Whole fans of vertices: their border is less ragged than that of single faces.
+    std::vector<std::uint8_t> inside(mesh_.face_end());
+    for (Index f = 0; f < mesh_.face_end(); ++f) {
+      const Triangle& t = mesh_.face(f);
+      inside[f] = above[t[0]] | above[t[1]] | above[t[2]];
+    }
+    std::vector<Edge> edges;
+    for (Index f = 0; f < mesh_.face_end(); ++f) {
+      for (int i = 0; i < 3 && inside[f] != 0; ++i) {
+        const Index other = neighbors_[f][i];
+        if (other != no_index && inside[other] == 0) {
+          edges.push_back({mesh_.face(f)[i], mesh_.face(f)[(i + 1) % 3]});
+        }
+      }
+    }
+    for (const EdgeChain& chain : chains_of(edges)) {
+      const bool is_there =
+          box == nullptr || std::all_of(chain.vertices.begin(), chain.vertices.end(), [&](Index v) {
+            return box->contains(start_.positions[v], room_);
+          });
+      if (is_there && chain.simple && chain.vertices.size() >= (chain.closed ? 4 : 3)) {
+        if (std::optional<Candidate> candidate = candidate_of(chain)) {
+          candidate->band = band_of(chain, plane, candidate->width);
+          candidates.push_back(std::move(*candidate));
+        }
+      }
+    }
+    return candidates;
+  }
+
+  /// The parts of the cage between the rings: those round larger limbs come first.
+  [[nodiscard]] std::vector<Index> parts_between(std::span<const Candidate> rings) const {
+    std::vector<Index> parts(mesh_.face_end(), 0);
+    Index part = 0;
+    for (const Candidate& ring : rings) {
+      ++part;
+      for (const Index f : ring.limb) {
+        parts[f] = part;
+      }
+    }
+    return parts;
+  }
+
+private:
+  // Round the plane, a part of its width, or as much as it takes to begin with.
+  [[nodiscard]] SeamBand band_of(const EdgeChain& ring, const Plane& plane, double width) const {
+    constexpr double narrow = 0.15;
+    SeamBand band{plane.point, plane.normal, 0};
+    if (is_half_ && !ring.closed) { // across the mirror plane
+      band.normal.x() = 0;
+      band.normal.normalize();
+    }
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Index v : ring.vertices) {
+      low = std::min(low, band.height(start_.positions[v]));
+      high = std::max(high, band.height(start_.positions[v]));
+    }
+    band.point += (low + high) / 2 * band.normal;
+    band.half_width = std::max(narrow * width, (high - low) / 2);
+    return band;
+  }
+
+  [[nodiscard]] std::optional<Candidate> candidate_of(const EdgeChain& chain) const {
+    const std::vector<Index>& ring = chain.vertices;
+    std::vector<std::uint8_t> beyond(mesh_.face_end(), 0);
+    std::vector<Edge> seam;
+    for (std::size_t i = 0; i + (chain.closed ? 0 : 1) < ring.size(); ++i) {
+      seam.push_back({ring[i], ring[(i + 1) % ring.size()]});
+    }
+    std::sort(seam.begin(), seam.end());
+    const auto is_seam = [&](Index a, Index b) {
+      return std::binary_search(seam.begin(), seam.end(), Edge{a, b}) ||
+             std::binary_search(seam.begin(), seam.end(), Edge{b, a});
+    };
+    std::vector<Index> limb{mesh_.face_left_of(seam[0][0], seam[0][1])};
+    beyond[limb[0]] = 1;
+    bool has_border = false;
+    for (std::size_t i = 0; i < limb.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const Index other = neighbors_[limb[i]][k];
+        const Triangle& t = mesh_.face(limb[i]);
+        has_border |= other == no_index;
+        if (other != no_index && beyond[other] == 0 && !is_seam(t[k], t[(k + 1) % 3])) {
+          beyond[other] = 1;
+          limb.push_back(other);
+        }
+      }
+    }
+    if (beyond[mesh_.face_left_of(seam[0][1], seam[0][0])] != 0) {
+      return std::nullopt; // it goes round a handle
+    }
+    std::vector<Index> rest;
+    for (const Index f : all_) {
+      if (beyond[f] == 0) {
+        rest.push_back(f);
+      }
+    }
+    Candidate made;
+    made.vertices = ring;
+    made.center = chain.closed
+                      ? center_of(ring)
+                      : Vec3((start_.positions[ring.front()] + start_.positions[ring.back()]) /
+                             2); // in the plane, where the half is open
+    const bool is_whole = !is_half_ || !chain.closed;
+    const double sides = is_half_ ? 2 : 1;
+    Vec3 doubled = Vec3::Zero();
+    for (const auto& [a, b] : seam) {
+      doubled += (start_.positions[a] - made.center).cross(start_.positions[b] - made.center);
+    }
+    const double ring_area = (is_whole ? sides : 1) * doubled.norm() / 2;
+    double volume = 0;
+    if (is_whole) {
+      if (volume_of(rest, made.center) < volume_of(limb, made.center)) {
+        std::swap(limb, rest);
+      }
+    } else if (has_border) {
+      std::swap(limb, rest);
+    }
+    volume = (is_whole ? sides : 1) * volume_of(limb, made.center);
+    const double others = sides * volume_of(all_, origin_) - volume;
+    made.copies = is_whole ? 1 : 2;
+    made.surface = (is_whole ? sides : 1) * area_of(limb) / (sides * area_);
+    made.width = std::sqrt(4 / std::numbers::pi * ring_area);
+    made.length = volume / std::max(ring_area * made.width, 1e-300);
+    made.limb = std::move(limb);
+    constexpr double least_length = 0.7;
+    constexpr double least_rest = 2; // cubes of the ring's size
+    const bool is_limb =
+        made.length > least_length && others > least_rest * std::pow(ring_area, 1.5);
+    return is_limb ? std::optional(std::move(made)) : std::nullopt;
+  }
+
+  [[nodiscard]] Vec3 center_of(std::span<const Index> vertices) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Index v : vertices) {
+      sum += start_.positions[v];
+    }
+    return sum / static_cast<double>(vertices.size());
+  }
+
+  [[nodiscard]] double volume_of(std::span<const Index> faces, const Vec3& origin) const {
+    double sum = 0;
+    for (const Index f : faces) {
+      const Corners t = corners_of(mesh_, f);
+      sum += (t[0] - origin).dot((t[1] - origin).cross(t[2] - origin)) / 6;
+    }
+    return sum;
+  }
+
+  [[nodiscard]] double area_of(std::span<const Index> faces) const {
+    double sum = 0;
+    for (const Index f : faces) {
+      sum += triangle_area(corners_of(mesh_, f));
+    }
+    return sum;
+  }
+
+  TriangleView start_;
+  CageMesh mesh_;
+  std::vector<std::array<Index, 3>> neighbors_;
+  std::vector<Index> all_;
+  bool is_half_ = false;
+  Vec3 origin_ = Vec3::Zero();
+  double area_ = 0;
+  double room_ = 0;
+};
+
+bool leave_room(const Candidate& a, const Candidate& b) {
+  constexpr double room = 0.8; // widths of the wider ring
+  if ((a.center - b.center).norm() < room * std::max(a.width, b.width)) {
+    return false;
+  }
+  return std::none_of(a.vertices.begin(), a.vertices.end(), [&](Index v) {
+    return std::find(b.vertices.begin(), b.vertices.end(), v) != b.vertices.end();
+  });
+}
+
+bool has_room(const Candidate& candidate, std::span<const Candidate> others) {
+  return std::all_of(others.begin(), others.end(),
+                     [&](const Candidate& other) { return leave_room(candidate, other); });
+}
+
+/// The directions of all cuts, those once that are nearly the same.
+std::vector<Vec3> directions_of(std::span<const LimbCut> cuts) {
+  constexpr double nearly = 0.97; // the cosine
+  std::vector<Vec3> directions;
+  for (const LimbCut& cut : cuts) {
+    for (int a = 0; a < 3; ++a) {
+      const Vec3 d = cut.box.axes.col(a);
+      if (std::none_of(directions.begin(), directions.end(),
+                       [&](const Vec3& other) { return std::abs(other.dot(d)) > nearly; })) {
+        directions.push_back(d);
+      }
+    }
+  }
+  return directions;
+}
+
+/// Even planes across the directions.
+std::vector<Plane> planes_across(std::span<const Vec3> directions, std::span<const Vec3> points) {
+  constexpr int count = 40; // across the diagonal
+  const double step = diagonal(points) / count;
+  std::vector<Plane> planes;
+  for (const Vec3& d : directions) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Vec3& p : points) {
+      low = std::min(low, p.dot(d));
+      high = std::max(high, p.dot(d));
+    }
+    for (double at = low + step; at < high - step / 2; at += step) {
+      planes.push_back({at * d, d});
+    }
+  }
+  return planes;
+}
+
+/// All of several lists, in order.
+std::vector<Candidate> joined(std::vector<std::vector<Candidate>> lists) {
+  std::vector<Candidate> all;
+  for (std::vector<Candidate>& list : lists) {
+    std::move(list.begin(), list.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+template <class Value> void sort_by(std::vector<Candidate>& candidates, const Value& value) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](const Candidate& a, const Candidate& b) { return value(a) > value(b); });
+}
+
+/// The rings where limbs begin: those without a better one near.
+std::vector<Candidate> beginnings(const Finder& finder, std::span<const LimbCut> cuts,
+                                  std::span<const Vec3> points) {
+  const std::vector<Plane> planes = planes_across(directions_of(cuts), points);
+  std::vector<std::vector<Candidate>> found(planes.size());
+  parallel_for(0, planes.size(), 1,
+               [&](std::size_t i) { found[i] = finder.candidates(planes[i], nullptr); });
+  std::vector<Candidate> all = joined(std::move(found));
+  sort_by(all, [](const Candidate& c) { return c.length; });
+  std::vector<Candidate> best;
+  for (Candidate& candidate : all) {
+    if (has_room(candidate, best)) {
+      best.push_back(std::move(candidate));
+    }
+  }
+  constexpr double long_enough = 3;
+  sort_by(best, [=](const Candidate& c) { return c.surface * std::min(c.length, long_enough); });
+  return best;
+}
+
+/// The rings along the cuts.
+std::vector<Candidate> bends(const Finder& finder, std::span<const LimbCut> cuts) {
+  std::vector<std::vector<Candidate>> found(cuts.size());
+  parallel_for(0, cuts.size(), 1, [&](std::size_t i) {
+    found[i] = finder.candidates({cuts[i].point, cuts[i].normal}, &cuts[i].box);
+  });
+  std::vector<Candidate> all = joined(std::move(found));
+  sort_by(all, [](const Candidate& c) { return c.surface; });
+  return all;
+}
+
+} // namespace
+
+std::vector<LimbCut> limb_cuts(TriangleView model, const Progress& progress) {
+  std::vector<LimbCut> cuts;
+  const Result<BoxDecomposition> boxes = decompose(model, {}, progress);
+  if (!boxes) {
+    return cuts;
+  }
+  for (const BoxNode& node : boxes->tree.nodes) {
+    if (node.cut) {
+      cuts.push_back({boxes->to_model(node.cut->point), boxes->grid.axes * node.cut->normal,
+                      boxes->to_model(node.box)});
+    }
+  }
+  return cuts;
+}
+
+LimbRings limb_rings(TriangleView start, std::span<const LimbCut> cuts, int vertices) {
+  constexpr double least_share = 3; // vertices, if limbs have them by their surface
+  const int most = vertices / (5 * static_cast<int>(least_seam));
+  const Finder finder(start);
+  std::vector<Candidate> chosen;
+  LimbRings rings;
+  const auto choose = [&](std::vector<Candidate> candidates) {
+    for (Candidate& candidate : candidates) {
+      if (rings.count + candidate.copies <= most && candidate.surface * vertices >= least_share &&
+          has_room(candidate, chosen)) {
+        rings.count += candidate.copies;
+        chosen.push_back(std::move(candidate));
+      }
+    }
+  };
+  choose(beginnings(finder, cuts, start.positions));
+  choose(bends(finder, cuts));
+  // From the largest limb to the smallest, which may lie within a larger one.
+  sort_by(chosen, [](const Candidate& c) { return c.surface; });
+  rings.parts = finder.parts_between(chosen);
+  rings.bands.emplace_back(); // of the body
+  for (const Candidate& ring : chosen) {
+    rings.bands.push_back(ring.band);
+  }
+  return rings;
+}
+
+std::vector<std::vector<Index>> rings_between(const PolygonMesh& cage,
+                                              std::span<const Index> parts) {
+  std::vector<std::vector<Index>> rings;
+  if (!parts.empty()) {
+    for (EdgeChain& chain : chains_of(edges_between_parts(cage, parts))) {
+      rings.push_back(std::move(chain.vertices));
+    }
+  }
+  return rings;
+}
+
+} // namespace cagewright
