@@ -72,8 +72,8 @@ public:
         " of the diagonal from the model, at (" + coordinates(nearest_place_) + "); " +
         (coarse_ >= limit_ && limit_ < most && (options_.vertices > 0 || options_.faces > 0)
              ? "allow more vertices"
-             : "there may be a hole, a hollow or a bridge between pieces there: try a finer "
-               "--envelope-resolution, a smaller clearance, or pieces apart");
+             : "there may be a hole, a hollow or a bridge between pieces there: try --method "
+               "envelope, a finer --envelope-resolution, a smaller clearance, or pieces apart");
     return std::move(nearest);
   }
 

@@ -194,7 +194,7 @@ private:
     made.width = std::sqrt(4 / std::numbers::pi * ring_area);
     made.length = volume / std::max(ring_area * made.width, 1e-300);
     made.limb = std::move(limb);
-    constexpr double least_length = 0.7;
+    constexpr double least_length = 0.75;
     constexpr double least_rest = 2; // cubes of the ring's size
     const bool is_limb =
         made.length > least_length && others > least_rest * std::pow(ring_area, 1.5);
