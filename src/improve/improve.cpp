@@ -272,9 +272,9 @@ private:
     return settle(2, progress.part(0.6, 1));
   }
 
-  // Tightens the cage for the last time, without needles. If too many faces are thin then, their
-  // shape is made to count more until it is better. \returns the objective, as it was weighted
-  // before
+  // Tightens the cage for the last time, without needles. If there is one left, or too many faces
+  // are thin, the shape of faces is made to count more until it is better. \returns the objective,
+  // as it was weighted before
   double settle_shapes(const Progress& progress) {
     constexpr double needle = 0.05;
     mend_needles(cage_, guard_, objective_, needle, most_valence_);
@@ -290,14 +290,20 @@ private:
     return objective_.total(cage_.mesh);
   }
 
-  // Whether more than one face in twenty is long and thin.
+  // Whether more than one face in twenty is long and thin, or any is a needle.
   [[nodiscard]] bool has_thin_faces() const {
     constexpr double thin = 0.16;
+    constexpr double needle = 0.032;
     std::size_t count = 0;
+    double least = 1;
     for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
-      count += cage_.mesh.has_face(f) && shape_quality(corners_of(cage_.mesh, f)) < thin ? 1 : 0;
+      if (cage_.mesh.has_face(f)) {
+        const double quality = shape_quality(corners_of(cage_.mesh, f));
+        count += quality < thin ? 1 : 0;
+        least = std::min(least, quality);
+      }
     }
-    return 20 * count >= cage_.mesh.face_count();
+    return 20 * count >= cage_.mesh.face_count() || least < needle;
   }
 
   // As few vertices as the gap allows. A cage that is a little too coarse is refined where it is

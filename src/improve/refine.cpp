@@ -81,6 +81,7 @@ bool leaves_valence(const CageMesh& cage, std::span<const Index> faces, Index a,
 std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change>& changes,
                  std::size_t most) {
   std::vector<bool> touched(2 * static_cast<std::size_t>(cage.mesh.face_end()) + 4 * most, false);
+  const Index next_vertex = cage.mesh.vertex_end(); // that every split has been evaluated with
   std::size_t made = 0;
   for (const Change& change : changes) {
     if (made >= most) {
@@ -92,8 +93,7 @@ std::size_t make(WorkingCage& cage, const Guard& guard, const std::vector<Change
     if (stale) {
       continue;
     }
-    const bool is_split = patch.vertex != no_index && patch.gone == no_index;
-    if (is_split && patch.vertex != cage.mesh.vertex_end()) {
+    if (patch.vertex == next_vertex && next_vertex != cage.mesh.vertex_end()) {
       const Index renamed = cage.mesh.vertex_end(); // the first split took the number
       for (Triangle& t : patch.added) {
         std::replace(t.begin(), t.end(), patch.vertex, renamed);
@@ -315,11 +315,6 @@ std::size_t mend_needles(WorkingCage& cage, const Guard& guard, const Objective&
   const double any_cost = std::pow(objective.diagonal(), 3) * objective.weights().typical_emphasis;
   std::vector<double> values;
   const auto rounder = [&](Patch patch, const Edge& edge) -> std::optional<Change> {
-    const std::optional<Vec3> position = place_clear_of_model(guard, objective, mesh, patch);
-    if (!position) {
-      return std::nullopt;
-    }
-    patch.position = *position;
     std::ptrdiff_t needles = 0; // more than before
     for (const Triangle& t : patch.added) {
       needles += is_needle(corners_after(mesh, patch, t), least, objective.diagonal()) ? 1 : 0;
@@ -333,9 +328,24 @@ std::size_t mend_needles(WorkingCage& cage, const Guard& guard, const Objective&
     const double change = objective.change(mesh, values, patch);
     return Change{any_cost - change, std::move(patch), edge};
   };
+  const auto placed = [&](Patch patch, const Edge& edge) -> std::optional<Change> {
+    const std::optional<Vec3> position = place_clear_of_model(guard, objective, mesh, patch);
+    if (!position) {
+      return std::nullopt;
+    }
+    patch.position = *position;
+    return rounder(std::move(patch), edge);
+  };
   const auto collapsed = [&](const Edge& edge) -> std::optional<Change> {
     std::optional<Patch> patch = mesh.collapse(edge[0], edge[1]);
     const bool fits = patch && mesh.sides(patch->vertex) * patch->added.size() <= most_valence;
+    return fits ? placed(std::move(*patch), edge) : std::nullopt;
+  };
+  const auto flipped = [&](const Edge& edge) -> std::optional<Change> {
+    std::optional<Patch> patch = mesh.flip(edge[0], edge[1]);
+    const bool fits = patch &&
+                      leaves_valence(mesh, patch->removed, edge[0], edge[1], most_valence) &&
+                      !guard.too_near(mesh, *patch);
     return fits ? rounder(std::move(*patch), edge) : std::nullopt;
   };
   const auto moved = [&](Index v) { // from amid its neighbors: a needle has no way to go
@@ -347,7 +357,7 @@ std::size_t mend_needles(WorkingCage& cage, const Guard& guard, const Objective&
     if (mesh.on_plane(v)) {
       middle.x() = 0;
     }
-    return rounder(mesh.move(v, middle), {v, v});
+    return placed(mesh.move(v, middle), {v, v});
   };
   std::size_t total = 0;
   for (;;) {
@@ -359,6 +369,9 @@ std::size_t mend_needles(WorkingCage& cage, const Guard& guard, const Objective&
       }
     }
     std::size_t made = make(cage, guard, ranked(sides_of(needles), collapsed), needles.size());
+    if (made == 0) {
+      made = make(cage, guard, ranked(sides_of(needles), flipped), needles.size());
+    }
     if (made == 0) {
       made = make(cage, guard, ranked(corners_of(needles), moved), needles.size());
     }

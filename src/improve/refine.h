@@ -29,9 +29,9 @@ std::size_t split_far_faces(WorkingCage& cage, const Guard& guard, const Objecti
 bool split_tip(WorkingCage& cage, const Guard& guard, const Objective& objective, Index tip,
                std::size_t most_valence);
 
-/// Collapses edges of faces whose 2 r / R is below `least`, such as a union of boxes has, or moves
-/// their corners, where there are fewer such faces after that; what it costs does not matter. The
-/// cage stays valid throughout. \returns how many changes were made
+/// Collapses or flips edges of faces whose 2 r / R is below `least`, such as a union of boxes has,
+/// or moves their corners, where there are fewer such faces after that; what it costs does not
+/// matter. The cage stays valid throughout. \returns how many changes were made
 std::size_t mend_needles(WorkingCage& cage, const Guard& guard, const Objective& objective,
                          double least, std::size_t most_valence);
 
