@@ -272,8 +272,8 @@ private:
     return settle(2, progress.part(0.6, 1));
   }
 
-  // Tightens the cage for the last time, without needles. If there is one left, or too many faces
-  // are thin, the shape of faces is made to count more until it is better. \returns the objective,
+  // Tightens the cage for the last time, without needles. If too many faces are thin then, their
+  // shape is made to count more until it is better. \returns the objective,
   // as it was weighted before
   double settle_shapes(const Progress& progress) {
     constexpr double needle = 0.05;
@@ -286,24 +286,46 @@ private:
       objective_.weigh_shape(weight * std::pow(dearer, i));
       settle(4, progress.part(0.25 * i, 0.25 * (i + 1)));
     }
+    round_needles(weight);
     objective_.weigh_shape(weight);
     return objective_.total(cage_.mesh);
   }
 
-  // Whether more than one face in twenty is long and thin, or any is a needle.
+  // Makes the shape of faces count above all for vertices round a needle, and more so if one is
+  // left.
+  void round_needles(double weight) {
+    constexpr double needle = 0.032;
+    constexpr int attempts = 4;
+    constexpr double dearer = 10;
+    for (int i = 1; i <= attempts; ++i) {
+      std::vector<Index> movable;
+      for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
+        if (cage_.mesh.has_face(f) && shape_quality(corners_of(cage_.mesh, f)) < needle) {
+          for (const Index v : cage_.mesh.face(f)) {
+            const std::vector<Index> beside = cage_.mesh.neighbors(v);
+            movable.insert(movable.end(), beside.begin(), beside.end());
+          }
+        }
+      }
+      if (movable.empty()) {
+        return;
+      }
+      std::sort(movable.begin(), movable.end());
+      movable.erase(std::unique(movable.begin(), movable.end()), movable.end());
+      objective_.weigh_shape(weight * std::pow(dearer, i));
+      cage_.reach = std::numeric_limits<double>::infinity();
+      relax(cage_, guard_, objective_, {.steps = 6, .movable = movable});
+    }
+  }
+
+  // Whether more than one face in twenty is long and thin.
   [[nodiscard]] bool has_thin_faces() const {
     constexpr double thin = 0.16;
-    constexpr double needle = 0.032;
     std::size_t count = 0;
-    double least = 1;
     for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
-      if (cage_.mesh.has_face(f)) {
-        const double quality = shape_quality(corners_of(cage_.mesh, f));
-        count += quality < thin ? 1 : 0;
-        least = std::min(least, quality);
-      }
+      count += cage_.mesh.has_face(f) && shape_quality(corners_of(cage_.mesh, f)) < thin ? 1 : 0;
     }
-    return 20 * count >= cage_.mesh.face_count() || least < needle;
+    return 20 * count >= cage_.mesh.face_count();
   }
 
   // As few vertices as the gap allows. A cage that is a little too coarse is refined where it is
