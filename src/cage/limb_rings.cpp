@@ -132,79 +132,101 @@ private:
   }
 
   [[nodiscard]] std::optional<Candidate> candidate_of(const EdgeChain& chain) const {
-    const std::vector<Index>& ring = chain.vertices;
-    std::vector<std::uint8_t> beyond(mesh_.face_end(), 0);
-    std::vector<Edge> seam;
-    for (std::size_t i = 0; i + (chain.closed ? 0 : 1) < ring.size(); ++i) {
-      seam.push_back({ring[i], ring[(i + 1) % ring.size()]});
+    const std::vector<Edge> seam = edges_of(chain);
+    std::optional<Sides> sides = sides_of(seam);
+    if (!sides) {
+      return std::nullopt;
     }
-    std::sort(seam.begin(), seam.end());
+    // Of a half what lies in the mirror plane or across it counts twice, and its center is in the
+    // plane, where the half is open: seen from there what closes it has no volume.
+    const bool is_across = is_half_ && !chain.closed;
+    const double copies = is_across ? 2 : 1;
+    Candidate made;
+    made.vertices = chain.vertices;
+    made.copies = is_half_ && chain.closed ? 2 : 1;
+    made.center =
+        is_across ? Vec3((position(chain.vertices.front()) + position(chain.vertices.back())) / 2)
+                  : center_of(chain.vertices);
+    const bool is_rest_closed = made.copies == 1;
+    const bool is_swapped =
+        is_rest_closed ? volume_of(sides->right, made.center) < volume_of(sides->left, made.center)
+                       : sides->left_has_border;
+    made.limb = std::move(is_swapped ? sides->right : sides->left);
+    const double ring_area = copies * area_within(seam, made.center);
+    const double volume = copies * volume_of(made.limb, made.center);
+    const double halves = is_half_ ? 2 : 1;
+    const double rest = halves * volume_of(all_, origin_) - volume;
+    made.surface = copies * area_of(made.limb) / (halves * area_);
+    made.width = std::sqrt(4 / std::numbers::pi * ring_area);
+    made.length = volume / std::max(ring_area * made.width, 1e-300);
+    constexpr double least_length = 0.75;
+    constexpr double least_rest = 2; // cubes of the ring's size
+    const bool is_limb = made.length > least_length && rest > least_rest * std::pow(ring_area, 1.5);
+    return is_limb ? std::optional(std::move(made)) : std::nullopt;
+  }
+
+  static std::vector<Edge> edges_of(const EdgeChain& chain) {
+    std::vector<Edge> edges;
+    const std::vector<Index>& v = chain.vertices;
+    for (std::size_t i = 0; i + (chain.closed ? 0 : 1) < v.size(); ++i) {
+      edges.push_back({v[i], v[(i + 1) % v.size()]});
+    }
+    std::sort(edges.begin(), edges.end());
+    return edges;
+  }
+
+  /// The faces on both sides of a ring.
+  struct Sides {
+    std::vector<Index> left;
+    std::vector<Index> right;
+    bool left_has_border = false; ///< that of a half
+  };
+
+  // None if the ring goes round a handle: then both sides are one.
+  [[nodiscard]] std::optional<Sides> sides_of(const std::vector<Edge>& seam) const {
     const auto is_seam = [&](Index a, Index b) {
       return std::binary_search(seam.begin(), seam.end(), Edge{a, b}) ||
              std::binary_search(seam.begin(), seam.end(), Edge{b, a});
     };
-    std::vector<Index> limb{mesh_.face_left_of(seam[0][0], seam[0][1])};
-    beyond[limb[0]] = 1;
-    bool has_border = false;
-    for (std::size_t i = 0; i < limb.size(); ++i) {
+    const auto [a, b] = seam.front();
+    std::vector<std::uint8_t> is_left(mesh_.face_end(), 0);
+    Sides sides;
+    sides.left.push_back(mesh_.face_left_of(a, b));
+    is_left[sides.left[0]] = 1;
+    for (std::size_t i = 0; i < sides.left.size(); ++i) {
+      const Index f = sides.left[i];
+      const Triangle& t = mesh_.face(f);
       for (int k = 0; k < 3; ++k) {
-        const Index other = neighbors_[limb[i]][k];
-        const Triangle& t = mesh_.face(limb[i]);
-        has_border |= other == no_index;
-        if (other != no_index && beyond[other] == 0 && !is_seam(t[k], t[(k + 1) % 3])) {
-          beyond[other] = 1;
-          limb.push_back(other);
+        const Index other = neighbors_[f][k];
+        sides.left_has_border |= other == no_index;
+        if (other != no_index && is_left[other] == 0 && !is_seam(t[k], t[(k + 1) % 3])) {
+          is_left[other] = 1;
+          sides.left.push_back(other);
         }
       }
     }
-    if (beyond[mesh_.face_left_of(seam[0][1], seam[0][0])] != 0) {
-      return std::nullopt; // it goes round a handle
+    if (is_left[mesh_.face_left_of(b, a)] != 0) {
+      return std::nullopt;
     }
-    std::vector<Index> rest;
-    for (const Index f : all_) {
-      if (beyond[f] == 0) {
-        rest.push_back(f);
-      }
-    }
-    Candidate made;
-    made.vertices = ring;
-    made.center = chain.closed
-                      ? center_of(ring)
-                      : Vec3((start_.positions[ring.front()] + start_.positions[ring.back()]) /
-                             2); // in the plane, where the half is open
-    const bool is_whole = !is_half_ || !chain.closed;
-    const double sides = is_half_ ? 2 : 1;
+    std::copy_if(all_.begin(), all_.end(), std::back_inserter(sides.right),
+                 [&](Index f) { return is_left[f] == 0; });
+    return sides;
+  }
+
+  [[nodiscard]] double area_within(std::span<const Edge> seam, const Vec3& center) const {
     Vec3 doubled = Vec3::Zero();
     for (const auto& [a, b] : seam) {
-      doubled += (start_.positions[a] - made.center).cross(start_.positions[b] - made.center);
+      doubled += (position(a) - center).cross(position(b) - center);
     }
-    const double ring_area = (is_whole ? sides : 1) * doubled.norm() / 2;
-    double volume = 0;
-    if (is_whole) {
-      if (volume_of(rest, made.center) < volume_of(limb, made.center)) {
-        std::swap(limb, rest);
-      }
-    } else if (has_border) {
-      std::swap(limb, rest);
-    }
-    volume = (is_whole ? sides : 1) * volume_of(limb, made.center);
-    const double others = sides * volume_of(all_, origin_) - volume;
-    made.copies = is_whole ? 1 : 2;
-    made.surface = (is_whole ? sides : 1) * area_of(limb) / (sides * area_);
-    made.width = std::sqrt(4 / std::numbers::pi * ring_area);
-    made.length = volume / std::max(ring_area * made.width, 1e-300);
-    made.limb = std::move(limb);
-    constexpr double least_length = 0.75;
-    constexpr double least_rest = 2; // cubes of the ring's size
-    const bool is_limb =
-        made.length > least_length && others > least_rest * std::pow(ring_area, 1.5);
-    return is_limb ? std::optional(std::move(made)) : std::nullopt;
+    return doubled.norm() / 2;
   }
+
+  [[nodiscard]] const Vec3& position(Index v) const { return start_.positions[v]; }
 
   [[nodiscard]] Vec3 center_of(std::span<const Index> vertices) const {
     Vec3 sum = Vec3::Zero();
     for (const Index v : vertices) {
-      sum += start_.positions[v];
+      sum += position(v);
     }
     return sum / static_cast<double>(vertices.size());
   }
