@@ -116,6 +116,18 @@ TEST_F(SpikedCage, LosesItsNeedles) {
   EXPECT_TRUE(validate_cage(cage_.mesh.compact(), model_)->valid());
 }
 
+TEST_F(SpikedCage, LosesNeedlesByMovesWhereNoEdgeMayGo) {
+  Patch patch = cage_.mesh.split(tip, cage_.mesh.neighbors(tip)[0]);
+  patch.position = cage_.mesh.position(tip) - Vec3(0.01, 0, 0);
+  cage_.apply(patch);
+  const std::size_t vertices = cage_.mesh.vertex_count();
+  constexpr std::size_t no_change_of_valence = 3;
+  EXPECT_GT(mend_needles(cage_, guard_, objective_, 0.05, no_change_of_valence), 0);
+  EXPECT_EQ(cage_.mesh.vertex_count(), vertices);
+  EXPECT_EQ(cage_.mesh.compact().positions.size(), vertices);
+  EXPECT_TRUE(validate_cage(cage_.mesh.compact(), model_)->valid());
+}
+
 TEST_F(SpikedCage, WithoutNeedlesStaysAsItIs) {
   const TriangleMesh before = cage_.mesh.compact();
   EXPECT_EQ(mend_needles(cage_, guard_, objective_, 0.05, 10), 0);
