@@ -116,9 +116,12 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
       return max_gap > 0 ? within_gap(*start, model, own, max_gap, made, part_of_it)
                          : improve(*start, model, own, part_of_it);
     };
-    Result<QuadStage> stage =
-        make_quads_in_budget(triangles, all_rings, model, options, improvement,
-                             diagonal(model.positions), improving.part(limbs_found, 1));
+    const MeasureQuadGap gap_of = [&](const PolygonMesh& cage, double tolerance) {
+      return greatest_gap_of_quads(cage, TriangleBvh(model), tolerance);
+    };
+    Result<QuadStage> stage = make_quads_in_budget(
+        {triangles, gap_of, all_rings, model, options, improvement, diagonal(model.positions)},
+        improving.part(limbs_found, 1));
     if (!stage) {
       return stage.error();
     }
@@ -178,9 +181,6 @@ std::string why_not_to_mirror(const BudgetCageOptions& options) {
   }
   if (options.boxes.boxes.pieces == Pieces::apart) {
     return "cages in pieces cannot be mirrored yet";
-  }
-  if (options.max_gap > 0 && options.quads) {
-    return "a cage of quads within a greatest gap cannot be mirrored yet";
   }
   // It would count on both sides.
   if (options.symmetry == Symmetry::automatic && !options.improve.density.empty()) {

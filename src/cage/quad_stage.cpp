@@ -3,7 +3,6 @@
 #include "mesh/measures.h"
 #include "mesh/triangulate.h"
 #include "quads/grid_quads.h"
-#include "spatial/bvh.h"
 #include "validate/greatest_gap.h"
 
 #include <algorithm>
@@ -97,22 +96,16 @@ double volume_of(const PolygonMesh& cage, CageExtent extent) {
   return signed_volume(mesh, origin);
 }
 
-double gap_of(const PolygonMesh& mesh, const TriangleBvh& model, double tolerance) {
-  return std::max(greatest_gap(cut(mesh, 0), model, tolerance).upper,
-                  greatest_gap(cut(mesh, 1), model, tolerance).upper);
-}
-
 /// Triangles, and quads made of them.
-Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, const LimbRings& rings,
-                               TriangleView model, const BudgetCageOptions& options,
-                               const QuadOptions& quads, const ImproveOptions& budget,
-                               const Progress& progress) {
+Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
+                               const QuadOptions& quads, const Progress& progress) {
+  const BudgetCageOptions& options = task.options;
+  const ImproveOptions& budget = task.budget;
   const double diagonal = quads.diagonal;
   const std::size_t sides = sides_of(budget);
   const auto most = static_cast<std::size_t>(budget.faces);
   int triangles = static_cast<int>(std::lround(usual_triangles * budget.faces));
   double gap = options.max_gap;
-  std::optional<TriangleBvh> bvh;
   std::optional<QuadStage> best;
   for (int k = 0; k < attempts; ++k) {
     // The first attempt fits unless there is more to keep to than a number of vertices.
@@ -120,14 +113,16 @@ Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, const LimbRi
     const Progress part =
         may_fail ? progress.part(static_cast<double>(k) / attempts, (k + 1.0) / attempts)
                  : progress;
-    Result<Improved> start = make_triangles(triangles, gap, rings, part.part(0, triangles_made));
+    Result<Improved> start =
+        task.make_triangles(triangles, gap, rings, part.part(0, triangles_made));
     if (!start) {
       return start.error();
     }
     QuadOptions own = quads;
     own.parts = start->parts;
     own.bands = rings.bands;
-    Result<Quadrangulated> made = make_quads(start->cage, model, own, part.part(triangles_made, 1));
+    Result<Quadrangulated> made =
+        make_quads(start->cage, task.model, own, part.part(triangles_made, 1));
     if (!made) {
       return made.error();
     }
@@ -135,11 +130,8 @@ Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, const LimbRi
     const std::size_t faces = sides * stage.made.cage.face_count();
     bool fits = true;
     if (options.max_gap > 0) {
-      if (!bvh) {
-        bvh.emplace(model);
-      }
       const double width = gap_width * options.max_gap * diagonal;
-      stage.gap = gap_of(stage.made.cage, *bvh, width) / diagonal;
+      stage.gap = task.gap_of(stage.made.cage, width) / diagonal;
       fits = *stage.gap <= options.max_gap;
       if (!fits) {
         stage.report.reached = false;
@@ -170,21 +162,17 @@ Result<QuadStage> paired_quads(const MakeTriangles& make_triangles, const LimbRi
 }
 
 /// The same with the rings, or without if they do not leave enough vertices, or enough quads.
-Result<QuadStage> ringed_quads(const MakeTriangles& make_triangles, const LimbRings& rings,
-                               TriangleView model, const BudgetCageOptions& options,
-                               const QuadOptions& quads, const ImproveOptions& budget,
+Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads,
                                const Progress& progress) {
   constexpr double usual = 0.8; // of the time
-  Result<QuadStage> with =
-      paired_quads(make_triangles, rings, model, options, quads, budget, progress.part(0, usual));
+  Result<QuadStage> with = paired_quads(task, task.rings, quads, progress.part(0, usual));
   const auto is_good = [](const QuadStage& stage) {
     return stage.report.reached && stage.made.report.share >= enough_quads;
   };
-  if (!with || rings.count == 0 || is_good(*with)) {
+  if (!with || task.rings.count == 0 || is_good(*with)) {
     return with;
   }
-  Result<QuadStage> without =
-      paired_quads(make_triangles, {}, model, options, quads, budget, progress.part(usual, 1));
+  Result<QuadStage> without = paired_quads(task, {}, quads, progress.part(usual, 1));
   const bool is_better = without && without->report.reached >= with->report.reached &&
                          (is_good(*without) || without->report.reached > with->report.reached ||
                           without->made.report.share > with->made.report.share);
@@ -193,33 +181,36 @@ Result<QuadStage> ringed_quads(const MakeTriangles& make_triangles, const LimbRi
 
 } // namespace
 
-Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, const LimbRings& rings,
-                                       TriangleView model, const BudgetCageOptions& options,
-                                       const ImproveOptions& budget, double diagonal,
-                                       const Progress& progress) {
+double greatest_gap_of_quads(const PolygonMesh& cage, const TriangleBvh& model, double tolerance) {
+  return std::max(greatest_gap(cut(cage, 0), model, tolerance).upper,
+                  greatest_gap(cut(cage, 1), model, tolerance).upper);
+}
+
+Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& progress) {
+  const BudgetCageOptions& options = task.options;
+  const ImproveOptions& budget = task.budget;
   QuadOptions quads = options.quad_options;
   quads.clearance = budget.clearance;
   quads.square = budget.square;
   quads.shape = budget.shape;
   quads.density = budget.density;
-  quads.diagonal = diagonal;
+  quads.diagonal = task.diagonal;
   // Of blocks nothing is known about the greatest gap.
   const bool try_blocks = options.max_gap == 0 && (budget.vertices > 0 || budget.faces > 0);
   constexpr double paired = 0.5; // of the time
-  Result<QuadStage> pairs = ringed_quads(make_triangles, rings, model, options, quads, budget,
-                                         progress.part(0, try_blocks ? paired : 1));
+  Result<QuadStage> pairs = ringed_quads(task, quads, progress.part(0, try_blocks ? paired : 1));
   if (!pairs || !try_blocks) {
     return pairs;
   }
-  const TriangleMesh all = with_strays(model);
-  const ModelSurface surface(all, diagonal);
+  const TriangleMesh all = with_strays(task.model);
+  const ModelSurface surface(all, task.diagonal);
   const auto loose = [&](const QuadStage& stage) {
     return looseness(stage.made.cage, surface, all, quads);
   };
   const MostMore most = most_more(pairs->made);
   const double loosest = pairs->report.reached ? most.loose * loose(*pairs) : 0; // 0: any
   const Result<QuadStage> blocks =
-      quads_of_blocks(model, quads, budget, loosest, progress.part(paired, 1));
+      quads_of_blocks(task.model, quads, budget, loosest, progress.part(paired, 1));
   if (!blocks && blocks.error().code == ErrorCode::cancelled) {
     return blocks;
   }

@@ -4,10 +4,10 @@
 
 #include "cage/budget_cage.h"
 #include "cage/limb_rings.h"
+#include "spatial/bvh.h"
 
 #include <functional>
 #include <optional>
-#include <span>
 
 namespace cagewright {
 
@@ -15,6 +15,24 @@ namespace cagewright {
 /// from the model than max_gap, in diagonals (0: anywhere), and keeps the rings.
 using MakeTriangles = std::function<Result<Improved>(
     int faces, double max_gap, const LimbRings& rings, const Progress& progress)>;
+
+/// How far the whole cage of which this is all, or half, is from the model at most, along any
+/// diagonals: in the model's units, to within `tolerance`.
+using MeasureQuadGap = std::function<double(const PolygonMesh& cage, double tolerance)>;
+
+/// That of a whole cage.
+double greatest_gap_of_quads(const PolygonMesh& cage, const TriangleBvh& model, double tolerance);
+
+/// What quads are made for, and with.
+struct QuadTask {
+  MakeTriangles make_triangles;
+  MeasureQuadGap gap_of;  ///< asked only if a greatest gap is
+  const LimbRings& rings; ///< on the start: edges of the quads, unless the budget does not allow it
+  TriangleView model;     ///< what the cage, or its half, must enclose
+  const BudgetCageOptions& options;
+  const ImproveOptions& budget; ///< of the whole cage, with the density for the vertices of `model`
+  double diagonal = 0;          ///< what lengths are fractions of
+};
 
 struct QuadStage {
   ImproveReport report; ///< of the triangles that the quads were made of
@@ -27,15 +45,7 @@ struct QuadStage {
 /// more triangles are made to begin with, and fewer if they were too many; the gap, which quads
 /// widen, is asked to be less of the triangles until that of the quads is what was asked for.
 ///
-/// \param rings     on the start: they become edges of the quads, unless the budget does not allow
-///                  it
-/// \param model     what the cage, or its half, must enclose
-/// \param budget    of the whole cage, with the density for the vertices of `model`
-/// \param diagonal  what lengths are fractions of
 /// Errors: those of make_triangles() and make_quads().
-Result<QuadStage> make_quads_in_budget(const MakeTriangles& make_triangles, const LimbRings& rings,
-                                       TriangleView model, const BudgetCageOptions& options,
-                                       const ImproveOptions& budget, double diagonal,
-                                       const Progress& progress = {});
+Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& progress = {});
 
 } // namespace cagewright

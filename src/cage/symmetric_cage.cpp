@@ -108,10 +108,10 @@ Result<TriangleMesh> half_start(const Task& task, const BudgetCageOptions& optio
 }
 
 /// Half a cage within the budget, or within the gap if one is asked for.
-Result<Improved> improve_half(const TriangleMesh& start, const Task& task,
-                              const BudgetCageOptions& options, const ImproveOptions& improvement,
-                              BudgetCage& made, const Progress& progress) {
-  if (!(options.max_gap > 0)) {
+Result<Improved> improve_half(const TriangleMesh& start, const Task& task, double max_gap,
+                              const ImproveOptions& improvement, BudgetCage& made,
+                              const Progress& progress) {
+  if (!(max_gap > 0)) {
     return improve(start, task.half.mesh, improvement, progress);
   }
   // The half keeps near the model and its mirror image. What counts is the model alone.
@@ -120,7 +120,7 @@ Result<Improved> improve_half(const TriangleMesh& start, const Task& task,
     return greatest_gap(join_halves(half, task.frame).mesh, model, tolerance);
   };
   Result<ImprovedToGap> result =
-      improve_to_gap(start, task.half.mesh, improvement, options.max_gap, measure, progress);
+      improve_to_gap(start, task.half.mesh, improvement, max_gap, measure, progress);
   if (!result) {
     return result.error();
   }
@@ -191,21 +191,27 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
     const LimbRings all_rings = limb_rings(
         *start, limb_cuts(whole_model, improving.part(0, limbs_found)), vertices_of(improvement));
     watch.lap("limbs");
-    const MakeTriangles triangles = [&](int faces, double, const LimbRings& rings,
+    const MakeTriangles triangles = [&](int faces, double max_gap, const LimbRings& rings,
                                         const Progress& part) {
       ImproveOptions own = improvement;
       own.faces = faces;
       own.parts = rings.parts;
       own.bands = rings.bands;
-      return improve(*start, task.half.mesh, own, part);
+      return improve_half(*start, task, max_gap, own, made, part);
     };
-    Result<QuadStage> stage =
-        make_quads_in_budget(triangles, all_rings, task.half.mesh, options, improvement,
-                             task.diagonal, improving.part(limbs_found, 1));
+    // What counts is the model alone, as for triangles.
+    const MeasureQuadGap gap_of = [&](const PolygonMesh& cage, double tolerance) {
+      return greatest_gap_of_quads(join_halves(cage, task.frame).mesh, TriangleBvh(model),
+                                   tolerance);
+    };
+    Result<QuadStage> stage = make_quads_in_budget(
+        {triangles, gap_of, all_rings, task.half.mesh, options, improvement, task.diagonal},
+        improving.part(limbs_found, 1));
     if (!stage) {
       return stage.error();
     }
     made.report = std::move(stage->report);
+    made.gap = stage->gap;
     watch.lap("improve");
     Whole<PolygonMesh> whole = join_halves(stage->made.cage, task.frame);
     made.quads = report_of(whole.mesh);
@@ -217,7 +223,8 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
     made.polygons = std::move(whole.mesh);
     made.mirror = std::move(whole.pairing);
   } else {
-    Result<Improved> result = improve_half(*start, task, options, improvement, made, improving);
+    Result<Improved> result =
+        improve_half(*start, task, options.max_gap, improvement, made, improving);
     if (!result) {
       return result.error();
     }

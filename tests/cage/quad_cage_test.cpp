@@ -1,7 +1,10 @@
 #include "cage/budget_cage.h"
+#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "mesh/triangulate.h"
+#include "spatial/bvh.h"
 #include "support/figures.h"
+#include "validate/greatest_gap.h"
 #include "validate/validate_cage.h"
 
 #include <gtest/gtest.h>
@@ -90,6 +93,23 @@ TEST(QuadCageWithinABudget, MayBeInPieces) {
   EXPECT_GT(made->quads->share, 0.5);
   const Result<ValidityReport> report =
       validate_cage(*made->polygons, model, {.allow_pieces = true});
+  EXPECT_TRUE(report && report->valid());
+}
+
+TEST(QuadCageWithinABudget, KeepsAGreatestGapWhenMirrored) {
+  const TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.6, 0.6});
+  BudgetCageOptions options = quads(0);
+  options.max_gap = 0.1;
+  options.symmetry = Symmetry::x;
+  const Result<BudgetCage> made = make_budget_cage(model, options);
+  ASSERT_TRUE(made && made->polygons && made->gap && made->mirror);
+  EXPECT_TRUE(made->report.reached);
+  EXPECT_LE(*made->gap, 0.1);
+  const double diag = diagonal(model.positions);
+  const GreatestGap gap = greatest_gap(made->cage, TriangleBvh(model), 1e-4 * diag);
+  EXPECT_LE(gap.lower, *made->gap * diag);
+  EXPECT_GT(made->quads->share, 0.5);
+  const Result<ValidityReport> report = validate_cage(*made->polygons, model);
   EXPECT_TRUE(report && report->valid());
 }
 
