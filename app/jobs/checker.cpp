@@ -1,7 +1,6 @@
 #include "app/jobs/checker.h"
 
 #include "app/jobs/work.h"
-#include "mesh/triangulate.h"
 
 #include <mutex>
 #include <utility>
@@ -90,7 +89,7 @@ void Checker::start() {
       if (!known->volume) {
         known->volume = model_volume(model->view());
       }
-      metrics = measure_cage(to_triangle_mesh(cage), model->view(), known->volume);
+      metrics = measure_cage(cage, model->view(), known->volume);
     }
     return Job::Apply([this, judged = *judged, metrics] {
       document_.set_offending_faces(judged.offending_faces);

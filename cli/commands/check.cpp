@@ -162,7 +162,7 @@ int run(const Options& options, const Session& session) {
     return fail(report.error());
   }
   name_model_faces(*report, triangles);
-  const CageMetrics metrics = measure_cage(to_triangle_mesh(*cage), view);
+  const CageMetrics metrics = measure_cage(*cage, view);
   if (!options.json.empty()) {
     nlohmann::json json = to_json(*report);
     json["cage"] = figures_as_json(metrics);

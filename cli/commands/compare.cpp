@@ -5,7 +5,6 @@
 #include "deform/standard_poses.h"
 #include "io/atomic_file.h"
 #include "io/read_mesh.h"
-#include "mesh/triangulate.h"
 #include "validate/cage_metrics.h"
 #include "validate/model_volume.h"
 #include "validate/validate_cage.h"
@@ -60,7 +59,7 @@ Result<Compared> describe(const std::string& path, TriangleView model, const Mod
     return report.error();
   }
   compared.validity = std::move(*report);
-  compared.metrics = measure_cage(to_triangle_mesh(*cage), model, volume);
+  compared.metrics = measure_cage(*cage, model, volume);
   if (with_poses) {
     const Result<PoseErrors> poses = pose_errors(*cage, model.positions, progress.part(0.6, 1));
     if (poses) {

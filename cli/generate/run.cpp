@@ -112,11 +112,10 @@ int make_cage_within_budget(const GenerateArguments& arguments, const Session& s
   if (!made) {
     return fail(in_file(arguments.model, made.error()));
   }
-  const CageMetrics metrics = measure_cage(made->cage, model);
+  const PolygonMesh cage = made->polygons ? *made->polygons : PolygonMesh(made->cage);
+  const CageMetrics metrics = measure_cage(cage, model);
   progress(1, "done");
-  if (const Status written =
-          write_outputs(arguments, made->polygons ? *made->polygons : PolygonMesh(made->cage),
-                        to_json(*made, metrics));
+  if (const Status written = write_outputs(arguments, cage, to_json(*made, metrics));
       !written) {
     return fail(written.error());
   }

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "mesh/measures.h"
+#include "mesh/triangulate.h"
 #include "spatial/bvh.h"
 
 #include <algorithm>
@@ -156,6 +157,19 @@ CageMetrics measure_cage(TriangleView cage, TriangleView model,
   measure_distances(cage, model, metrics);
   measure_shapes(cage, metrics);
   metrics.min_dihedral = min_dihedral(cage);
+  return metrics;
+}
+
+CageMetrics measure_cage(const PolygonMesh& cage, TriangleView model,
+                         const std::optional<ModelVolume>& known_volume) {
+  CageMetrics metrics = measure_cage(TriangleView(to_triangle_mesh(cage)), model, known_volume);
+  std::vector<std::size_t> valence(cage.positions.size(), 0);
+  metrics.max_valence = 0;
+  for (std::size_t f = 0; f < cage.face_count(); ++f) {
+    for (const Index v : cage.face(f)) {
+      metrics.max_valence = std::max(metrics.max_valence, ++valence[v]);
+    }
+  }
   return metrics;
 }
 

@@ -2,6 +2,7 @@
 /// How good a cage is, in numbers.
 #pragma once
 
+#include "mesh/polygon_mesh.h"
 #include "mesh/triangle_mesh.h"
 #include "validate/model_volume.h"
 
@@ -25,7 +26,7 @@ struct CageMetrics {
   double max_distance = 0;     ///< the same, the greatest; the cage's vertices are among the points
   double min_quality = 0;      ///< least 2 r / R of a cage triangle: 1 equilateral, 0 degenerate
   double low_quality = 0;      ///< 5th percentile of the same
-  std::size_t max_valence = 0; ///< most triangles at one vertex
+  std::size_t max_valence = 0; ///< most faces at one vertex
   double min_dihedral = 0;     ///< least angle between neighbors, in degrees: 180 flat, 0 folded
 };
 
@@ -38,6 +39,11 @@ struct CageMetrics {
 /// \param model_volume  if it is known, to save its computation
 /// Cost: O((T + F) log(T + F)) time; parallel, the same on any number of threads.
 CageMetrics measure_cage(TriangleView cage, TriangleView model,
+                         const std::optional<ModelVolume>& model_volume = {});
+
+/// The same of polygons: of the triangles that to_triangle_mesh() cuts them into, but the valence
+/// is that of the polygons.
+CageMetrics measure_cage(const PolygonMesh& cage, TriangleView model,
                          const std::optional<ModelVolume>& model_volume = {});
 
 } // namespace cagewright

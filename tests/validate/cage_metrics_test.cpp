@@ -35,6 +35,24 @@ TEST(MeasureCage, KnowsACubeRoundACube) {
   EXPECT_NEAR(metrics.min_dihedral, 90, 1e-12);
 }
 
+TEST(MeasureCage, OfPolygonsCountsPolygonsAtAVertex) {
+  PolygonMesh cube;
+  cube.positions = scaled(make_cube(), 1.5).positions; // vertex i: + along axis k if bit k is set
+  for (const std::array<Index, 4>& face : {std::array<Index, 4>{0, 2, 3, 1},
+                                           {4, 5, 7, 6},
+                                           {0, 1, 5, 4},
+                                           {2, 6, 7, 3},
+                                           {0, 4, 6, 2},
+                                           {1, 3, 7, 5}}) {
+    cube.add_face(face);
+  }
+  const CageMetrics metrics = measure_cage(cube, make_cube());
+  EXPECT_EQ(metrics.max_valence, 3U);
+  EXPECT_EQ(metrics.faces, 12U);
+  EXPECT_DOUBLE_EQ(metrics.volume, 27);
+  EXPECT_GT(measure_cage(scaled(make_cube(), 1.5), make_cube()).max_valence, 3U);
+}
+
 TEST(MeasureCage, AveragesOverTheAreaNotTheTriangles) {
   // The mean over a face of the larger cube: 0.5 on the inner square (4/9 of it), more beyond it.
   // By the integral of sqrt(1/4 + u^2) along the sides and sqrt(1/4 + u^2 + v^2) in the corners.
