@@ -42,8 +42,8 @@ using Ring = std::vector<std::array<Index, 2>>;
 
 /// Vertices and faces keep their numbers while they live; numbers of the dead are not reused.
 ///
-/// Its faces may belong to parts. The edges between two parts, the seams, are then loops that no
-/// two of have a vertex in common, and so it stays: changes that would tear a seam, pinch it, make
+/// Its faces may belong to parts. The edges between two parts, the seams, are then loops, no two of
+/// which have a vertex in common, and so it stays: changes that would tear a seam, pinch it, make
 /// it shorter than `least_seam` edges, or join it to another are not offered. A seam may have a
 /// band that its vertices are to stay in.
 class CageMesh {
