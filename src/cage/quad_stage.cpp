@@ -96,6 +96,11 @@ double volume_of(const PolygonMesh& cage, CageExtent extent) {
   return signed_volume(mesh, origin);
 }
 
+/// How many triangles are made for so many faces, to begin with.
+int triangles_for(int faces) {
+  return static_cast<int>(std::lround(usual_triangles * faces));
+}
+
 /// Triangles, and quads made of them.
 Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
                                const QuadOptions& quads, const Progress& progress) {
@@ -104,7 +109,7 @@ Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
   const double diagonal = quads.diagonal;
   const std::size_t sides = sides_of(budget);
   const auto most = static_cast<std::size_t>(budget.faces);
-  int triangles = static_cast<int>(std::lround(usual_triangles * budget.faces));
+  int triangles = triangles_for(budget.faces);
   double gap = options.max_gap;
   std::optional<QuadStage> best;
   for (int k = 0; k < attempts; ++k) {
@@ -161,18 +166,36 @@ Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
   return std::move(*best);
 }
 
-/// The same with the rings, or without if they do not leave enough vertices, or enough quads.
+/// Whether the triangles that the quads were made of, with rings, are much worse than without.
+bool rings_cost_much(const QuadTask& task, const QuadStage& with, const Progress& progress) {
+  if (task.options.max_gap > 0) {
+    return false; // then they have other numbers of vertices
+  }
+  constexpr double much = 1.05; // rings seldom cost more than 3 %
+  const Result<Improved> without =
+      task.make_triangles(triangles_for(task.budget.faces), 0, {}, progress);
+  return without && without->report.reached &&
+         with.report.objective > much * without->report.objective;
+}
+
+/// The same with the rings, or without if they cost much, or do not leave enough vertices or
+/// enough quads.
 Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads,
                                const Progress& progress) {
   constexpr double usual = 0.8; // of the time
+  constexpr double compared = 0.85;
   Result<QuadStage> with = paired_quads(task, task.rings, quads, progress.part(0, usual));
   const auto is_good = [](const QuadStage& stage) {
     return stage.report.reached && stage.made.report.share >= enough_quads;
   };
-  if (!with || task.rings.count == 0 || is_good(*with)) {
+  if (!with || task.rings.count == 0) {
     return with;
   }
-  Result<QuadStage> without = paired_quads(task, {}, quads, progress.part(usual, 1));
+  const bool much = rings_cost_much(task, *with, progress.part(usual, compared));
+  if (is_good(*with) && !much) {
+    return with;
+  }
+  Result<QuadStage> without = paired_quads(task, {}, quads, progress.part(compared, 1));
   const bool is_better = without && without->report.reached >= with->report.reached &&
                          (is_good(*without) || without->report.reached > with->report.reached ||
                           without->made.report.share > with->made.report.share);
