@@ -115,8 +115,7 @@ int make_cage_within_budget(const GenerateArguments& arguments, const Session& s
   const PolygonMesh cage = made->polygons ? *made->polygons : PolygonMesh(made->cage);
   const CageMetrics metrics = measure_cage(cage, model);
   progress(1, "done");
-  if (const Status written = write_outputs(arguments, cage, to_json(*made, metrics));
-      !written) {
+  if (const Status written = write_outputs(arguments, cage, to_json(*made, metrics)); !written) {
     return fail(written.error());
   }
   say(session, summary(*made, metrics));
