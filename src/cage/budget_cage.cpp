@@ -104,8 +104,8 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
   const Progress improving = progress.part(started, improved);
   Result<ValidityReport> validity = ValidityReport();
   if (options.quads) {
-    const LimbRings all_rings = limb_rings(*start, limb_cuts(model, improving.part(0, limbs_found)),
-                                           vertices_of(improvement));
+    const LimbRings all_rings =
+        find_limb_rings(*start, model, vertices_of(improvement), improving.part(0, limbs_found));
     watch.lap("limbs");
     const MakeTriangles triangles = [&](int faces, double max_gap, const LimbRings& rings,
                                         const Progress& part_of_it) {
@@ -116,8 +116,9 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
       return max_gap > 0 ? within_gap(*start, model, own, max_gap, made, part_of_it)
                          : improve(*start, model, own, part_of_it);
     };
+    std::optional<TriangleBvh> bvh;
     const MeasureQuadGap gap_of = [&](const PolygonMesh& cage, double tolerance) {
-      return greatest_gap_of_quads(cage, TriangleBvh(model), tolerance);
+      return greatest_gap_of_quads(cage, bvh ? *bvh : bvh.emplace(model), tolerance);
     };
     Result<QuadStage> stage = make_quads_in_budget(
         {triangles, gap_of, all_rings, model, options, improvement, diagonal(model.positions)},

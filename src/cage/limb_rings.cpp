@@ -273,6 +273,11 @@ bool has_room(const Candidate& candidate, std::span<const Candidate> others) {
                      [&](const Candidate& other) { return leave_room(candidate, other); });
 }
 
+/// A fifth of the vertices may be on rings.
+int most_rings(int vertices) {
+  return vertices / (5 * static_cast<int>(least_seam));
+}
+
 /// The directions of all cuts, those once that are nearly the same.
 std::vector<Vec3> directions_of(std::span<const LimbCut> cuts) {
   constexpr double nearly = 0.97; // the cosine
@@ -372,7 +377,7 @@ std::vector<LimbCut> limb_cuts(TriangleView model, const Progress& progress) {
 
 LimbRings limb_rings(TriangleView start, std::span<const LimbCut> cuts, int vertices) {
   constexpr double least_share = 3; // vertices, if limbs have them by their surface
-  const int most = vertices / (5 * static_cast<int>(least_seam));
+  const int most = most_rings(vertices);
   const Finder finder(start);
   std::vector<Candidate> chosen;
   LimbRings rings;
@@ -395,6 +400,12 @@ LimbRings limb_rings(TriangleView start, std::span<const LimbCut> cuts, int vert
     rings.bands.push_back(ring.band);
   }
   return rings;
+}
+
+LimbRings find_limb_rings(TriangleView start, TriangleView model, int vertices,
+                          const Progress& progress) {
+  return most_rings(vertices) > 0 ? limb_rings(start, limb_cuts(model, progress), vertices)
+                                  : LimbRings();
 }
 
 std::vector<std::vector<Index>> rings_between(const PolygonMesh& cage,

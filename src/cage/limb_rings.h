@@ -50,6 +50,11 @@ struct LimbRings {
 /// Cost: O(planes * faces), some hundred planes.
 LimbRings limb_rings(TriangleView start, std::span<const LimbCut> cuts, int vertices);
 
+/// The rings on the start for the limbs of the model; none, without a search, if there are too few
+/// vertices for one, or none is asked for (0).
+LimbRings find_limb_rings(TriangleView start, TriangleView model, int vertices,
+                          const Progress& progress = {});
+
 /// The closed loops of edges between the parts that the faces of a whole cage belong to.
 std::vector<std::vector<Index>> rings_between(const PolygonMesh& cage,
                                               std::span<const Index> parts);

@@ -188,8 +188,8 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
   Result<ValidityReport> validity = ValidityReport();
   if (options.quads) {
     const TriangleMesh whole_model = in_frame(model, task.frame);
-    const LimbRings all_rings = limb_rings(
-        *start, limb_cuts(whole_model, improving.part(0, limbs_found)), vertices_of(improvement));
+    const LimbRings all_rings = find_limb_rings(*start, whole_model, vertices_of(improvement),
+                                                improving.part(0, limbs_found));
     watch.lap("limbs");
     const MakeTriangles triangles = [&](int faces, double max_gap, const LimbRings& rings,
                                         const Progress& part) {
@@ -200,9 +200,10 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
       return improve_half(*start, task, max_gap, own, made, part);
     };
     // What counts is the model alone, as for triangles.
+    std::optional<TriangleBvh> bvh;
     const MeasureQuadGap gap_of = [&](const PolygonMesh& cage, double tolerance) {
-      return greatest_gap_of_quads(join_halves(cage, task.frame).mesh, TriangleBvh(model),
-                                   tolerance);
+      return greatest_gap_of_quads(join_halves(cage, task.frame).mesh,
+                                   bvh ? *bvh : bvh.emplace(model), tolerance);
     };
     Result<QuadStage> stage = make_quads_in_budget(
         {triangles, gap_of, all_rings, task.half.mesh, options, improvement, task.diagonal},

@@ -6,6 +6,7 @@
 #include "mesh/shapes.h"
 #include "support/figures.h"
 #include "support/models.h"
+#include "support/quads.h"
 #include "validate/validate_cage.h"
 
 #include <gtest/gtest.h>
@@ -19,6 +20,7 @@ namespace cagewright {
 namespace {
 
 using test::ellipsoid;
+using test::quads_of;
 
 constexpr double body_end = 1; // of the figure's body, along x
 
@@ -73,6 +75,7 @@ TEST(LimbRings, LieInTheirBands) {
   const TriangleMesh model = figure();
   const TriangleMesh start = fine_cage(model);
   const LimbRings rings = limb_rings(start, limb_cuts(model), 50);
+  ASSERT_EQ(rings.count, 2);
   for (const EdgeChain& ring : rings_of(start, rings.parts)) {
     const bool in_one =
         std::any_of(rings.bands.begin() + 1, rings.bands.end(), [&](const SeamBand& band) {
@@ -127,6 +130,14 @@ TEST(LimbRings, AreFewerWhereThereAreFewVertices) {
   EXPECT_GT(limb_rings(start, cuts, 200).count, 2);
 }
 
+TEST(LimbRings, AreNotLookedForWhereThereMayBeNone) {
+  const TriangleMesh model = figure();
+  const TriangleMesh start = fine_cage(model);
+  EXPECT_TRUE(find_limb_rings(start, model, 0).parts.empty());
+  EXPECT_TRUE(find_limb_rings(start, model, 19).parts.empty());
+  EXPECT_EQ(find_limb_rings(start, model, 50).count, 2);
+}
+
 TEST(LimbRings, AreTheSameOnAnyNumberOfThreads) {
   const TriangleMesh model = figure();
   const TriangleMesh start = fine_cage(model);
@@ -176,14 +187,6 @@ void expect_rings_that_separate(const BudgetCage& made) {
   }
 }
 
-BudgetCageOptions quads(int vertices) {
-  BudgetCageOptions options;
-  options.improve.vertices = vertices;
-  options.improve.rounds = 0;
-  options.quads = true;
-  return options;
-}
-
 /// The figure with its arms aslant, so that blocks do not fit it.
 TriangleMesh raised(TriangleMesh figure) {
   for (Vec3& p : figure.positions) {
@@ -197,7 +200,7 @@ TriangleMesh raised(TriangleMesh figure) {
 TEST(CageOfQuads, HasRingsRoundTheArmsOfAFigure) {
   const TriangleMesh model = raised(figure());
   for (const Symmetry symmetry : {Symmetry::off, Symmetry::x}) {
-    BudgetCageOptions options = quads(70);
+    BudgetCageOptions options = quads_of(70);
     options.symmetry = symmetry;
     const Result<BudgetCage> made = make_budget_cage(model, options);
     ASSERT_TRUE(made);
@@ -224,7 +227,7 @@ TEST(CageOfQuads, HasRingsRoundTheLegsAndTheNeckOfACow) {
   if (!model) {
     GTEST_SKIP() << "no such model in CAGEWRIGHT_MODELS";
   }
-  BudgetCageOptions options = quads(100);
+  BudgetCageOptions options = quads_of(100);
   options.symmetry = Symmetry::automatic;
   const Result<BudgetCage> made = make_budget_cage(*model, options);
   ASSERT_TRUE(made);

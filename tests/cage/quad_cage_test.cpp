@@ -4,6 +4,7 @@
 #include "mesh/triangulate.h"
 #include "spatial/bvh.h"
 #include "support/figures.h"
+#include "support/quads.h"
 #include "validate/greatest_gap.h"
 #include "validate/validate_cage.h"
 
@@ -17,20 +18,13 @@ namespace cagewright {
 namespace {
 
 using test::ellipsoid;
+using test::quads_of;
 
 /// A body with two arms, its own mirror image in the plane x = 3.
 TriangleMesh figure() {
   TriangleMesh mesh = ellipsoid({3, 0, 0}, {1, 1.6, 0.7});
   mesh = joined(mesh, ellipsoid({4.4, 0.6, 0.2}, {0.9, 0.25, 0.25}));
   return joined(mesh, ellipsoid({1.6, 0.6, 0.2}, {0.9, 0.25, 0.25}));
-}
-
-BudgetCageOptions quads(int vertices) {
-  BudgetCageOptions options;
-  options.improve.vertices = vertices;
-  options.improve.rounds = 0;
-  options.quads = true;
-  return options;
 }
 
 /// The corners of a face, begun at the least.
@@ -42,7 +36,7 @@ std::vector<Index> key(std::span<const Index> face) {
 
 TEST(QuadCageWithinABudget, IsPairedExactlyWhenMirrored) {
   const TriangleMesh model = figure();
-  BudgetCageOptions options = quads(40);
+  BudgetCageOptions options = quads_of(40);
   options.symmetry = Symmetry::automatic;
   const Result<BudgetCage> made = make_budget_cage(model, options);
   ASSERT_TRUE(made && made->mirror && made->polygons);
@@ -72,7 +66,7 @@ TEST(QuadCageWithinABudget, IsPairedExactlyWhenMirrored) {
 
 TEST(QuadCageWithinABudget, CountsAQuadAsOneFace) {
   const TriangleMesh model = figure();
-  BudgetCageOptions options = quads(0);
+  BudgetCageOptions options = quads_of(0);
   options.improve.faces = 40;
   const Result<BudgetCage> made = make_budget_cage(model, options);
   ASSERT_TRUE(made && made->polygons);
@@ -84,7 +78,7 @@ TEST(QuadCageWithinABudget, CountsAQuadAsOneFace) {
 TEST(QuadCageWithinABudget, MayBeInPieces) {
   TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.5, 0.5});
   model = joined(model, ellipsoid({0, 2, 0}, {1, 0.5, 0.5}));
-  BudgetCageOptions options = quads(40);
+  BudgetCageOptions options = quads_of(40);
   options.boxes.boxes.pieces = Pieces::apart;
   const Result<BudgetCage> made = make_budget_cage(model, options);
   ASSERT_TRUE(made && made->polygons);
@@ -98,7 +92,7 @@ TEST(QuadCageWithinABudget, MayBeInPieces) {
 
 TEST(QuadCageWithinABudget, KeepsAGreatestGapWhenMirrored) {
   const TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.6, 0.6});
-  BudgetCageOptions options = quads(0);
+  BudgetCageOptions options = quads_of(0);
   options.max_gap = 0.1;
   options.symmetry = Symmetry::x;
   const Result<BudgetCage> made = make_budget_cage(model, options);
@@ -115,7 +109,7 @@ TEST(QuadCageWithinABudget, KeepsAGreatestGapWhenMirrored) {
 
 TEST(QuadCageWithinABudget, KeepsAGreatestGap) {
   const TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.6, 0.6});
-  BudgetCageOptions options = quads(0);
+  BudgetCageOptions options = quads_of(0);
   options.max_gap = 0.1;
   const Result<BudgetCage> made = make_budget_cage(model, options);
   ASSERT_TRUE(made && made->polygons && made->gap);
