@@ -11,7 +11,6 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
@@ -159,14 +158,27 @@ class Generate(InAFolder):
 
     def test_stops_at_an_interrupt_and_leaves_nothing(self):
         cage = self.folder / "cage.obj"
+        terminal, errors = os.openpty()  # progress is shown on terminals only
+        self.addCleanup(os.close, terminal)
         process = subprocess.Popen(
             [str(PROGRAM), "generate", str(CREATURE), "-o", str(cage), "--resolution", "256", "--depth", "8"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        time.sleep(0.3)
+            stdout=subprocess.DEVNULL, stderr=errors)
+        os.close(errors)
+        shown = self.read_until(terminal, b"classifying")  # at work, however busy the machine is
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=120)
-        self.assertEqual(process.returncode, INTERRUPTED, errors)
+        shown += self.read_until(terminal, b"cancelled")
+        self.assertEqual(process.wait(timeout=120), INTERRUPTED, shown)
         self.assertEqual(os.listdir(self.folder), [])
+
+    def read_until(self, terminal, word):
+        """What the terminal shows up to `word`; all of it where the word never comes."""
+        shown = b""
+        while word not in shown:
+            try:
+                shown += os.read(terminal, 4096)
+            except OSError:  # the program has ended
+                break
+        return shown
 
 
 class Check(InAFolder):
