@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace cagewright {
@@ -67,9 +68,13 @@ Result<QuadStage> quads_of_blocks(TriangleView model, const QuadOptions& quads,
   return stage;
 }
 
+bool is_well_shaped(const QuadReport& quads) {
+  return quads.share >= enough_quads && quads.thin <= few_thin;
+}
+
 /// How much more a cage of blocks may have than quads made of triangles. It is all quads, in strips
 /// all round: that is worth some room between cage and model, but less if the pairs have rings
-/// round limbs, and more if too few of their faces are quads.
+/// round limbs, and more if too few of their faces are quads, or too many are thin.
 struct MostMore {
   double loose = 1; ///< times as loose
   /// Times the volume. Where blocks span two limbs their faces are near the model all the same; it
@@ -78,7 +83,7 @@ struct MostMore {
 };
 
 MostMore most_more(const Quadrangulated& pairs) {
-  if (pairs.report.share < enough_quads) {
+  if (!is_well_shaped(pairs.report)) {
     return {2, 1.25};
   }
   const bool has_rings = std::any_of(pairs.parts.begin(), pairs.parts.end(),
@@ -178,27 +183,29 @@ bool rings_cost_much(const QuadTask& task, const QuadStage& with, const Progress
          with.report.objective > much * without->report.objective;
 }
 
-/// The same with the rings, or without if they cost much, or do not leave enough vertices or
-/// enough quads.
+/// The same with the rings, or without if they cost much, or do not leave enough vertices, enough
+/// quads or round enough faces.
 Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads,
                                const Progress& progress) {
   constexpr double usual = 0.8; // of the time
   constexpr double compared = 0.85;
   Result<QuadStage> with = paired_quads(task, task.rings, quads, progress.part(0, usual));
-  const auto is_good = [](const QuadStage& stage) {
-    return stage.report.reached && stage.made.report.share >= enough_quads;
-  };
   if (!with || task.rings.count == 0) {
     return with;
   }
   const bool much = rings_cost_much(task, *with, progress.part(usual, compared));
-  if (is_good(*with) && !much) {
+  if (!much && with->report.reached && is_well_shaped(with->made.report)) {
     return with;
   }
   Result<QuadStage> without = paired_quads(task, {}, quads, progress.part(compared, 1));
-  const bool is_better = without && without->report.reached >= with->report.reached &&
-                         (is_good(*without) || without->report.reached > with->report.reached ||
-                          without->made.report.share > with->made.report.share);
+  // In the order of weight: the budget, enough quads, round faces.
+  const auto merit = [](const QuadStage& stage) {
+    const QuadReport& made = stage.made.report;
+    return std::tuple(stage.report.reached, std::min(made.share, enough_quads),
+                      -std::max(made.thin, few_thin));
+  };
+  const bool is_better =
+      without && (much ? merit(*without) >= merit(*with) : merit(*without) > merit(*with));
   return !without || is_better ? std::move(without) : std::move(with);
 }
 
@@ -240,9 +247,11 @@ Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& pro
   const auto volume = [&](const QuadStage& stage) {
     return volume_of(stage.made.cage, budget.extent);
   };
-  const bool is_better = blocks && blocks->report.reached &&
-                         (loosest == 0 || (loose(*blocks) <= loosest &&
-                                           volume(*blocks) <= most.volume * volume(*pairs)));
+  const bool is_better =
+      blocks && blocks->report.reached &&
+      (blocks->made.report.thin <= few_thin || !is_well_shaped(pairs->made.report)) &&
+      (loosest == 0 ||
+       (loose(*blocks) <= loosest && volume(*blocks) <= most.volume * volume(*pairs)));
   return is_better ? blocks : pairs;
 }
 

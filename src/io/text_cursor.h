@@ -15,9 +15,9 @@
 
 namespace cagewright {
 
-/// A position in a text. Words are separated by blanks; '#' at the start of a word begins a comment
-/// that ends with the line (within a word it does not: some programs write nan as 1.#QNAN). No
-/// memory is allocated and every byte is looked at about once.
+/// A position in a text. Words are separated by blanks; '#' at the start of a word, or right after
+/// a number, begins a comment that ends with the line (elsewhere it does not: some programs write
+/// nan as 1.#QNAN). No memory is allocated and every byte is looked at about once.
 class TextCursor {
 public:
   /// What a backslash before a line end means: OBJ carries the line on.
@@ -118,7 +118,7 @@ public:
     } else if (error != std::errc()) {
       return std::nullopt;
     }
-    if (!ends_word(to)) {
+    if (!ends_number(to)) {
       return std::nullopt;
     }
     at_ = to;
@@ -139,7 +139,7 @@ public:
   /// The integer here; none, without moving, where there is none or it needs more than 64 bits.
   std::optional<std::int64_t> integer() {
     const std::optional<std::int64_t> value = integer_prefix();
-    if (value && !ends_word(at_)) {
+    if (value && !ends_number(at_)) {
       at_ = before_prefix_;
       return std::nullopt;
     }
@@ -185,6 +185,11 @@ private:
 
   [[nodiscard]] bool ends_word(const char* p) const {
     return p == end_ || is_blank(*p) || *p == line_end_ || (*p == '\\' && continues_at(p));
+  }
+
+  /// The same right after a number, which a comment may follow at once.
+  [[nodiscard]] bool ends_number(const char* p) const {
+    return ends_word(p) || (*p == '#' && p[-1] != '.');
   }
 
   /// Whether the backslash at p is the last of its line and carries it on.

@@ -1,6 +1,7 @@
 #include "quads/quads.h"
 
 #include "mesh/measures.h"
+#include "mesh/triangulate.h"
 #include "quads/edge_loops.h"
 #include "quads/matching.h"
 #include "quads/pairing.h"
@@ -168,6 +169,18 @@ std::size_t closed_strips(const PolygonMesh& mesh) {
   return closed / 2; // each was walked both ways
 }
 
+double thin_triangles(TriangleView mesh) {
+  constexpr double thin = 0.15; // 2 r / R
+  const auto count =
+      std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+        return triangle_quality(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]) <
+               thin;
+      });
+  return mesh.triangles.empty()
+             ? 0
+             : static_cast<double>(count) / static_cast<double>(mesh.triangles.size());
+}
+
 } // namespace
 
 QuadReport report_of(const PolygonMesh& mesh) {
@@ -188,6 +201,7 @@ QuadReport report_of(const PolygonMesh& mesh) {
   }
   const std::size_t faces = mesh.face_count();
   report.share = faces > 0 ? static_cast<double>(report.quads) / static_cast<double>(faces) : 0;
+  report.thin = thin_triangles(to_triangle_mesh(mesh));
   report.rings = closed_strips(mesh);
   report.loops = closed_loops(mesh);
   return report;

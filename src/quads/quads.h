@@ -35,6 +35,8 @@ struct QuadOptions {
 
 /// The share of quads among the faces that make_quads() aims at.
 inline constexpr double enough_quads = 0.7;
+/// The share of thin triangles that it stays below if it can: see QuadReport.
+inline constexpr double few_thin = 0.05;
 
 struct QuadReport {
   std::size_t quads = 0;
@@ -49,6 +51,8 @@ struct QuadReport {
   /// Closed loops of edges that go straight on at every vertex, four quads meeting there: round
   /// limbs, and round the body.
   std::size_t loops = 0;
+  /// Of the triangles that triangulate() makes, the share whose 2 r / R is below 0.15.
+  double thin = 0;
 };
 
 struct Quadrangulated {
