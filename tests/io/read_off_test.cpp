@@ -30,6 +30,15 @@ TEST(ReadOff, KnowsTheHeadersInUse) {
   }
 }
 
+TEST(ReadOff, TakesCommentsRightAfterNumbers) {
+  const PolygonMesh mesh = read_off("OFF\n3 1 0#counts\n0 0 0#a\n1 0 0.5#b\n0 1. 2#c\n3 0 1 2#d\n");
+  ASSERT_EQ(mesh.positions.size(), 3U);
+  EXPECT_EQ(mesh.positions[1], Vec3(1, 0, 0.5));
+  EXPECT_EQ(test::faces_of(mesh), (Faces{{0, 1, 2}}));
+  EXPECT_NE(message_of("OFF\n3 1 0\n0 0 1.#QNAN\n1 0 0\n0 1 0\n3 0 1 2\n").find("1.#QNAN"),
+            std::string::npos);
+}
+
 TEST(ReadOff, SkipsNormalsAndTextureCoordinates) {
   for (const auto& [header, rest] : {std::pair<std::string, std::string>{"NOFF", " 0 0 nan"},
                                      {"STOFF", " .5 .5"},

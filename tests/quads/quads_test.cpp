@@ -313,6 +313,15 @@ TEST(PairCoplanar, GivesTheCubeItsSixFaces) {
   EXPECT_TRUE(topology(cube).is_closed());
 }
 
+TEST(QuadReport, CountsThinTriangles) {
+  PolygonMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0.05, 0}, {2, 0, 0}};
+  mesh.add_face({0, 1, 2, 3});
+  mesh.add_face({0, 1, 4});
+  mesh.add_face({1, 5, 2});
+  EXPECT_EQ(report_of(mesh).thin, 0.25); // one of four; the quad has two
+}
+
 TEST(PairCoplanar, LeavesASurfaceThatIsNowhereFlat) {
   EXPECT_EQ(report_of(pair_coplanar(make_icosphere(1))).quads, 0U);
 }
