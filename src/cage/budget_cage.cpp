@@ -9,6 +9,7 @@
 #include "cage/quad_stage.h"
 #include "cage/symmetric_cage.h"
 #include "cage/unit_frame.h"
+#include "cage/well_shaped.h"
 #include "mesh/measures.h"
 #include "mesh/triangulate.h"
 #include "spatial/bvh.h"
@@ -136,9 +137,10 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
     validity =
         validate_cage(*made.polygons, model, {.first_only = true}, progress.part(improved, 1));
   } else {
-    Result<Improved> result = options.max_gap > 0 ? within_gap(*start, model, improvement,
-                                                               options.max_gap, made, improving)
-                                                  : improve(*start, model, improvement, improving);
+    Result<Improved> result =
+        options.max_gap > 0
+            ? within_gap(*start, model, improvement, options.max_gap, made, improving)
+            : improve_well_shaped(*start, model, improvement, improving);
     if (!result) {
       return result.error();
     }
