@@ -124,19 +124,6 @@ public:
     return true;
   }
 
-  // Where the vertex may be, however tight the budget: no farther beyond the model than this, or
-  // than the old faces.
-  [[nodiscard]] Box3 room() const {
-    constexpr double beyond = 0.25; // of the diagonal
-    const ModelSurface& model = guard_.model();
-    const Vec3 more = Vec3::Constant(beyond * model.diagonal + 2 * guard_.clearance());
-    Box3 box(model.box.min() - more, model.box.max() + more);
-    for (const Vec3& p : old_) {
-      box.extend(p);
-    }
-    return box;
-  }
-
 private:
   void add_gap(Quadratic& q, const Corners& t, std::vector<HalfSpace>* contacts) const {
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -268,23 +255,6 @@ void add_band(const SeamBand& band, const Vec3& origin, std::vector<HalfSpace>& 
   spaces.push_back({-band.normal, band.half_width - middle});
 }
 
-Vec3 nearest_in(const Box3& box, const Vec3& p) {
-  return p.cwiseMax(box.min()).cwiseMin(box.max());
-}
-
-// Half spaces for the sides of the box that the place is beyond. \returns whether there are any
-bool add_sides_passed(const Box3& box, const Vec3& place, std::vector<HalfSpace>& spaces) {
-  const std::size_t before = spaces.size();
-  for (int k = 0; k < 3; ++k) {
-    if (place[k] > box.max()[k]) {
-      spaces.push_back({Vec3::Unit(k), box.max()[k]});
-    } else if (place[k] < box.min()[k]) {
-      spaces.push_back({-Vec3::Unit(k), -box.min()[k]});
-    }
-  }
-  return spaces.size() > before;
-}
-
 } // namespace
 
 std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& objective,
@@ -300,8 +270,6 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
     patch.position = band->nearest(patch.position);
     add_band(*band, Vec3::Zero(), spaces);
   }
-  const Box3 room = fan.room();
-  patch.position = nearest_in(room, patch.position);
   std::optional<Vec3> best;
   Quadratic quadratic = fan.objective();
   Vec3 origin = patch.position;
@@ -322,14 +290,11 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
         return best;
       }
     }
-    std::optional<Vec3> next = solve(quadratic, origin, spaces, patch.on_plane);
-    if (next && add_sides_passed(room, *next, spaces)) {
-      next = solve(quadratic, origin, spaces, patch.on_plane);
-    }
+    const std::optional<Vec3> next = solve(quadratic, origin, spaces, patch.on_plane);
     if (!next) {
       return best;
     }
-    patch.position = nearest_in(room, *next);
+    patch.position = *next;
   }
   return best;
 }

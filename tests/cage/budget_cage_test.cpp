@@ -215,42 +215,6 @@ TEST(BudgetCage, FillsHandlesThatItTriedInVainToGoRound) {
   }
 }
 
-// However many vertices it is made to go without, a spike is no longer than this.
-TEST(BudgetCage, HasNoSpikesFarBeyondTheModel) {
-  const std::optional<TriangleMesh> knot = test::real_model({"knot.off"});
-  if (!knot) {
-    GTEST_SKIP() << "knot.off is not there";
-  }
-  BudgetCageOptions options;
-  options.improve.vertices = 50;
-  options.improve.rounds = 0;
-  options.resolution = 42; // whose handle is not filled
-  const Result<BudgetCage> made = make_budget_cage(*knot, options);
-  ASSERT_TRUE(made) << made.error().message;
-  const Box3 model = bounding_box(TriangleView(*knot));
-  const Vec3 beyond = Vec3::Constant(0.3 * model.diagonal().norm());
-  EXPECT_TRUE(Box3(model.min() - beyond, model.max() + beyond)
-                  .contains(bounding_box(TriangleView(made->cage))));
-}
-
-TEST(BudgetCage, HasTheVerticesAskedForWhereTheBoxesHaveFewer) {
-  const TriangleMesh model = make_icosphere(3);
-  BudgetCageOptions options = of_vertices(60);
-  options.start = CageStart::obb;
-  options.boxes.boxes.slicing.depth = 0;
-  for (const Symmetry symmetry : {Symmetry::off, Symmetry::x}) {
-    options.symmetry = symmetry;
-    const Result<BudgetCage> made = make_budget_cage(model, options);
-    ASSERT_TRUE(made) << made.error().message;
-    ASSERT_LE(made->start_vertices, 16U);
-    EXPECT_GE(made->cage.positions.size(), 55U);
-    EXPECT_LE(made->cage.positions.size(), 60U);
-    EXPECT_TRUE(is_valid(*made, model));
-    const double box = 6 / std::acos(-1); // of the ball's volume
-    EXPECT_LT(signed_volume(made->cage), 0.7 * box * signed_volume(model));
-  }
-}
-
 TEST(BudgetCage, SaysWhereAGapCannotBeKept) {
   const TriangleMesh model = make_torus(0.3, 48, 24);
   BudgetCageOptions options = of_vertices(20);
