@@ -196,23 +196,20 @@ TEST(BudgetCage, KeepsTheGapWithAFewVerticesMoreThanItMust) {
   }
 }
 
-// The envelope of the one has more handles than 100 vertices can go round, though not by much; that
-// of the other has but one, which takes more than 50 to go along.
+// Its envelope has more handles than 100 vertices can go round, though not by much.
 TEST(BudgetCage, FillsHandlesThatItTriedInVainToGoRound) {
-  for (const auto& [name, vertices] : {std::pair("knot1.off", 100), std::pair("knot.off", 50)}) {
-    const std::optional<TriangleMesh> knot = test::real_model({name});
-    if (!knot) {
-      GTEST_SKIP() << name << " is not there";
-    }
-    BudgetCageOptions options;
-    options.improve.vertices = vertices;
-    options.improve.rounds = 0;
-    const Result<BudgetCage> made = make_budget_cage(*knot, options);
-    ASSERT_TRUE(made) << made.error().message;
-    EXPECT_TRUE(made->report.reached) << made->report.why_not;
-    EXPECT_LE(made->cage.positions.size(), static_cast<std::size_t>(vertices));
-    EXPECT_TRUE(validate_cage(made->cage, *knot)->valid());
+  const std::optional<TriangleMesh> knot = test::real_model({"knot1.off"});
+  if (!knot) {
+    GTEST_SKIP() << "knot1.off is not there";
   }
+  BudgetCageOptions options;
+  options.improve.vertices = 100;
+  options.improve.rounds = 0;
+  const Result<BudgetCage> made = make_budget_cage(*knot, options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(made->report.reached) << made->report.why_not;
+  EXPECT_LE(made->cage.positions.size(), 100U);
+  EXPECT_TRUE(validate_cage(made->cage, *knot)->valid());
 }
 
 TEST(BudgetCage, SaysWhereAGapCannotBeKept) {
