@@ -9,6 +9,7 @@
 #include "cage/quad_stage.h"
 #include "cage/symmetric_cage.h"
 #include "cage/unit_frame.h"
+#include "cage/well_shaped.h"
 #include "mesh/measures.h"
 #include "mesh/triangulate.h"
 #include "spatial/bvh.h"
@@ -136,9 +137,10 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
     validity =
         validate_cage(*made.polygons, model, {.first_only = true}, progress.part(improved, 1));
   } else {
-    Result<Improved> result = options.max_gap > 0 ? within_gap(*start, model, improvement,
-                                                               options.max_gap, made, improving)
-                                                  : improve(*start, model, improvement, improving);
+    Result<Improved> result =
+        options.max_gap > 0
+            ? within_gap(*start, model, improvement, options.max_gap, made, improving)
+            : improve_well_shaped(*start, model, improvement, improving);
     if (!result) {
       return result.error();
     }
@@ -158,21 +160,35 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
 }
 
 /// One closed surface for the whole model. If the envelope has more handles than the budget can go
-/// round, though it seemed enough for them, more of them are filled.
+/// round, though it seemed enough for them, more of them are filled, and all if need be: a knot has
+/// but one, and it takes many vertices to go along it.
 Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& options,
                                   const Progress& progress) {
-  constexpr double usual = 0.9; // of the time: hardly ever is there a second start
+  constexpr double usual = 0.9; // of the time: hardly ever is there another start
   Result<BudgetCage> made = make_from_one_start(model, options, progress.part(0, usual));
   const bool is_chosen = options.resolution == 0 && options.envelope_vertices == 0;
-  if (!made || made->report.reached || made->genus == 0 || !is_chosen || options.max_gap > 0) {
+  if (!made || !is_chosen || options.max_gap > 0) {
     return made;
   }
-  BudgetCageOptions simpler = options;
-  simpler.envelope_vertices = vertices_of(options.improve) / 2;
-  Result<BudgetCage> again = make_from_one_start(model, simpler, progress.part(usual, 1));
-  const bool is_better = again && again->report.reached;
-  const bool is_cancelled = !again && again.error().code == ErrorCode::cancelled;
-  return is_better || is_cancelled ? std::move(again) : std::move(made);
+  double done = usual;
+  constexpr int none = 1; // vertices enough to go round none
+  for (const int vertices : {vertices_of(options.improve) / 2, none}) {
+    if (made->report.reached || made->genus == 0) {
+      break;
+    }
+    BudgetCageOptions simpler = options;
+    simpler.envelope_vertices = vertices;
+    const double then = (done + 1) / 2;
+    Result<BudgetCage> again = make_from_one_start(model, simpler, progress.part(done, then));
+    done = then;
+    if (!again && again.error().code == ErrorCode::cancelled) {
+      return again;
+    }
+    if (again && again->report.reached) {
+      made = std::move(again);
+    }
+  }
+  return made;
 }
 
 /// Why a cage with these options is not its own mirror image, though it should be; else nothing.

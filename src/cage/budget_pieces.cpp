@@ -142,6 +142,15 @@ bool are_apart(const BudgetCage& a, const BudgetCage& b) {
   return true;
 }
 
+/// Whether a cage is as small as it may be, or could not be made so.
+bool keeps_to(const BudgetCage& cage, int vertices, int faces) {
+  const std::size_t count =
+      cage.polygons ? cage.polygons->face_count() : cage.cage.triangles.size();
+  return !cage.report.reached ||
+         ((vertices == 0 || cage.cage.positions.size() <= static_cast<std::size_t>(vertices)) &&
+          (faces == 0 || count <= static_cast<std::size_t>(faces)));
+}
+
 /// Faces of both.
 PolygonMesh joined_faces(const PolygonMesh& a, const PolygonMesh& b) {
   PolygonMesh all;
@@ -256,7 +265,7 @@ Result<BudgetCage> make_pieces(TriangleView model, PieceGroups groups,
         shares(options.improve.faces, 2 * vertices_for_a_piece - 4, areas);
     cages.resize(parts.size());
     for (std::size_t g = 0; g < parts.size(); ++g) {
-      if (cages[g]) {
+      if (cages[g] && keeps_to(*cages[g], vertices[g], faces[g])) {
         continue;
       }
       std::vector<double> density;
@@ -277,7 +286,7 @@ Result<BudgetCage> make_pieces(TriangleView model, PieceGroups groups,
     if (fewer.count == groups.count) {
       break;
     }
-    // The cages of groups that stay as they are keep.
+    // The cages of groups that stay as they are keep, if they still may be so large.
     std::vector<std::optional<BudgetCage>> kept(fewer.count);
     std::vector<std::size_t> members(fewer.count, 0);
     std::vector<bool> seen(groups.count, false);

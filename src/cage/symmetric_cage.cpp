@@ -5,6 +5,7 @@
 #include "cage/limb_rings.h"
 #include "cage/not_valid.h"
 #include "cage/quad_stage.h"
+#include "cage/well_shaped.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "mesh/triangulate.h"
@@ -225,7 +226,9 @@ Result<BudgetCage> make_symmetric_cage(TriangleView model, const MirrorPlane& pl
     made.mirror = std::move(whole.pairing);
   } else {
     Result<Improved> result =
-        improve_half(*start, task, options.max_gap, improvement, made, improving);
+        options.max_gap > 0
+            ? improve_half(*start, task, options.max_gap, improvement, made, improving)
+            : improve_well_shaped(*start, task.half.mesh, improvement, improving);
     if (!result) {
       return result.error();
     }

@@ -218,7 +218,7 @@ void FaceBoxes::find(const Box3& box, std::vector<Index>& found) const {
 
 ModelSurface::ModelSurface(TriangleView model, double unit)
     : tree(model), diagonal(unit > 0 ? unit : bounding_box(model).diagonal().norm()),
-      parts(connected_parts(model)) {}
+      box(bounding_box(model.positions)), parts(connected_parts(model)) {}
 
 TriangleMesh with_strays(TriangleView model) {
   TriangleMesh result{{model.positions.begin(), model.positions.end()},

@@ -36,6 +36,7 @@ struct ModelSurface {
 
   SurfaceTree tree;
   double diagonal = 0;
+  Box3 box;
   /// A connected part of the model: a face of the cage that keeps clear of the model has either
   /// all of it on one side or all on the other.
   struct Part {

@@ -22,19 +22,19 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Vertices that a cage like this one may have: a collapse takes a vertex and two faces.
+// Vertices that a cage like this one may have: a collapse takes a vertex and two faces, a split
+// gives as many.
 std::size_t vertex_budget(const CageMesh& start, const ImproveOptions& options) {
-  std::size_t budget = start.vertex_count();
-  if (options.vertices > 0) {
-    budget = std::min(budget, static_cast<std::size_t>(options.vertices));
+  const auto vertices = static_cast<std::ptrdiff_t>(start.vertex_count());
+  const auto faces = static_cast<std::ptrdiff_t>((start.is_half() ? 2 : 1) * start.face_count());
+  std::ptrdiff_t budget = options.vertices > 0 ? options.vertices : vertices;
+  if (options.faces > 0) {
+    const std::ptrdiff_t more = options.faces - faces;
+    const std::ptrdiff_t splits = more >= 0 ? more / 2 : -((1 - more) / 2);
+    budget = options.vertices > 0 ? std::min(budget, vertices + splits) : vertices + splits;
   }
-  const std::size_t faces = (start.is_half() ? 2 : 1) * start.face_count();
-  if (options.faces > 0 && faces > static_cast<std::size_t>(options.faces)) {
-    const std::size_t collapses = (faces - static_cast<std::size_t>(options.faces) + 1) / 2;
-    budget = std::min(budget, start.vertex_count() - std::min(start.vertex_count(), collapses));
-  }
-  constexpr std::size_t tetrahedron = 4;
-  return std::max(budget, tetrahedron);
+  constexpr std::ptrdiff_t tetrahedron = 4;
+  return static_cast<std::size_t>(std::max(budget, tetrahedron));
 }
 
 ObjectiveWeights weights_for(TriangleView start, TriangleView model, const ImproveOptions& options,
@@ -101,11 +101,25 @@ public:
 
 private:
   void simplify_to_budget(const Progress& progress) {
+    if (options_.max_gap == 0) {
+      make_enough(progress.part(0, 0.1));
+    }
     reduce(Placement::outside_patch, std::max(budget_, careful_from(budget_)),
-           progress.part(0, 0.2));
+           progress.part(0.1, 0.2));
     reduce(Placement::clear_of_model, budget_, progress.part(0.2, 1));
     if (over_budget()) {
       get_unstuck(progress.part(1, 1));
+    }
+  }
+
+  // Boxes may have hardly more vertices than there may be, or fewer, and none but at their corners:
+  // there is little to choose from until long edges are split.
+  void make_enough(const Progress& progress) {
+    constexpr std::size_t enough = 3; // times the budget
+    if ((options_.vertices > 0 || options_.faces > 0) &&
+        cage_.mesh.vertex_count() < enough * budget_) {
+      split_long_edges(cage_, guard_, enough * budget_, most_valence_);
+      relax_steps(4, progress);
     }
   }
 

@@ -15,8 +15,9 @@
 namespace cagewright {
 
 struct ImproveOptions {
-  int vertices = 100; ///< at most so many; 0: no limit
-  int faces = 0;      ///< at most so many triangles; 0: no limit
+  /// At most so many; 0: no limit, but no more than the start has.
+  int vertices = 100;
+  int faces = 0; ///< at most so many triangles; 0: no limit
   /// Least distance from every face of the cage to the model, in diagonals of the model's box. The
   /// start must keep it.
   double clearance = 0.002;

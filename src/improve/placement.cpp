@@ -124,6 +124,19 @@ public:
     return true;
   }
 
+  // Where the vertex may be, however tight the budget: no farther beyond the model than this, or
+  // than the old faces.
+  [[nodiscard]] Box3 room() const {
+    constexpr double beyond = 0.25; // of the diagonal
+    const ModelSurface& model = guard_.model();
+    const Vec3 more = Vec3::Constant(beyond * model.diagonal + 2 * guard_.clearance());
+    Box3 box(model.box.min() - more, model.box.max() + more);
+    for (const Vec3& p : old_) {
+      box.extend(p);
+    }
+    return box;
+  }
+
 private:
   void add_gap(Quadratic& q, const Corners& t, std::vector<HalfSpace>* contacts) const {
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -255,6 +268,21 @@ void add_band(const SeamBand& band, const Vec3& origin, std::vector<HalfSpace>& 
   spaces.push_back({-band.normal, band.half_width - middle});
 }
 
+// Half spaces for the sides of the box that the place is beyond. \returns whether there are any
+bool add_sides_passed(const Box3& box, const Vec3& place, std::vector<HalfSpace>& spaces) {
+  constexpr double rounding = 1e-9;
+  const double slack = rounding * box.diagonal().norm();
+  const std::size_t before = spaces.size();
+  for (int k = 0; k < 3; ++k) {
+    if (place[k] > box.max()[k] + slack) {
+      spaces.push_back({Vec3::Unit(k), box.max()[k]});
+    } else if (place[k] < box.min()[k] - slack) {
+      spaces.push_back({-Vec3::Unit(k), -box.min()[k]});
+    }
+  }
+  return spaces.size() > before;
+}
+
 } // namespace
 
 std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& objective,
@@ -270,6 +298,7 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
     patch.position = band->nearest(patch.position);
     add_band(*band, Vec3::Zero(), spaces);
   }
+  const Box3 room = fan.room();
   std::optional<Vec3> best;
   Quadratic quadratic = fan.objective();
   Vec3 origin = patch.position;
@@ -277,7 +306,8 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
   for (int round = 0; round < most_rounds; ++round) {
     if (fan.add_blocked(spaces) == 0) {
       const std::optional<ClosestPoints> pair = guard.too_near(cage, patch);
-      if (!pair) {
+      const bool is_out = !pair && add_sides_passed(room, patch.position, spaces);
+      if (!pair && !is_out) {
         const bool settled = best && (*best - patch.position).norm() < guard.clearance() / 4;
         best = patch.position;
         if (taken == refreshes || settled) {
@@ -286,7 +316,7 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
         quadratic = fan.objective();
         origin = patch.position;
         ++taken;
-      } else if (!fan.add_separation(spaces, *pair)) {
+      } else if (pair && !fan.add_separation(spaces, *pair)) {
         return best;
       }
     }

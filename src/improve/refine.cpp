@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <queue>
 #include <span>
 #include <vector>
 
@@ -238,6 +239,33 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
     total += made;
     if (made == 0) {
       return total;
+    }
+  }
+}
+
+void split_long_edges(WorkingCage& cage, const Guard& guard, std::size_t vertices,
+                      std::size_t most_valence) {
+  using Long = std::pair<double, Edge>; // squared length
+  const CageMesh& mesh = cage.mesh;
+  const auto measured = [&](const Edge& edge) {
+    return Long((mesh.position(edge[0]) - mesh.position(edge[1])).squaredNorm(), edge);
+  };
+  std::priority_queue<Long> longest;
+  for (const Edge& edge : edges_of(mesh)) {
+    longest.push(measured(edge));
+  }
+  while (mesh.vertex_count() < vertices && !longest.empty()) {
+    const auto [a, b] = longest.top().second;
+    longest.pop();
+    const Patch patch = mesh.split(a, b);
+    if (!leaves_valence(mesh, patch.removed, a, b, most_valence) || guard.too_near(mesh, patch) ||
+        guard.crosses(mesh, cage.boxes, patch)) {
+      continue;
+    }
+    const Index middle = mesh.vertex_end();
+    cage.apply(patch);
+    for (const Index v : mesh.neighbors(middle)) {
+      longest.push(measured({v, middle}));
     }
   }
 }

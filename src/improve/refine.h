@@ -11,6 +11,11 @@ namespace cagewright {
 std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,
                        std::size_t most_valence);
 
+/// Splits the longest edges in the middle until the cage has so many vertices, or no edge is left
+/// that can be split. Its shape stays as it is. The cage stays valid throughout.
+void split_long_edges(WorkingCage& cage, const Guard& guard, std::size_t vertices,
+                      std::size_t most_valence);
+
 /// Splits up to `count` edges where a new vertex lowers the objective most, no two of them in
 /// neighbouring faces. The cage stays valid throughout. \returns how many
 std::size_t split_edges(WorkingCage& cage, const Guard& guard, const Objective& objective,

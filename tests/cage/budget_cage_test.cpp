@@ -196,20 +196,59 @@ TEST(BudgetCage, KeepsTheGapWithAFewVerticesMoreThanItMust) {
   }
 }
 
-// Its envelope has more handles than 100 vertices can go round, though not by much.
+// The envelope of the one has more handles than 100 vertices can go round, though not by much; that
+// of the other has but one, which takes more than 50 to go along.
 TEST(BudgetCage, FillsHandlesThatItTriedInVainToGoRound) {
-  const std::optional<TriangleMesh> knot = test::real_model({"knot1.off"});
+  for (const auto& [name, vertices] : {std::pair("knot1.off", 100), std::pair("knot.off", 50)}) {
+    const std::optional<TriangleMesh> knot = test::real_model({name});
+    if (!knot) {
+      GTEST_SKIP() << name << " is not there";
+    }
+    BudgetCageOptions options;
+    options.improve.vertices = vertices;
+    options.improve.rounds = 0;
+    const Result<BudgetCage> made = make_budget_cage(*knot, options);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_TRUE(made->report.reached) << made->report.why_not;
+    EXPECT_LE(made->cage.positions.size(), static_cast<std::size_t>(vertices));
+    EXPECT_TRUE(validate_cage(made->cage, *knot)->valid());
+  }
+}
+
+// However many vertices it is made to go without, a spike is no longer than this.
+TEST(BudgetCage, HasNoSpikesFarBeyondTheModel) {
+  const std::optional<TriangleMesh> knot = test::real_model({"knot.off"});
   if (!knot) {
-    GTEST_SKIP() << "knot1.off is not there";
+    GTEST_SKIP() << "knot.off is not there";
   }
   BudgetCageOptions options;
-  options.improve.vertices = 100;
+  options.improve.vertices = 50;
   options.improve.rounds = 0;
+  options.resolution = 42; // whose handle is not filled
   const Result<BudgetCage> made = make_budget_cage(*knot, options);
   ASSERT_TRUE(made) << made.error().message;
-  EXPECT_TRUE(made->report.reached) << made->report.why_not;
-  EXPECT_LE(made->cage.positions.size(), 100U);
-  EXPECT_TRUE(validate_cage(made->cage, *knot)->valid());
+  const Box3 model = bounding_box(TriangleView(*knot));
+  const Vec3 beyond = Vec3::Constant(0.3 * model.diagonal().norm());
+  EXPECT_TRUE(Box3(model.min() - beyond, model.max() + beyond)
+                  .contains(bounding_box(TriangleView(made->cage))));
+}
+
+TEST(BudgetCage, HasTheVerticesAskedForWhereTheBoxesHaveFewer) {
+  const TriangleMesh model = make_icosphere(3);
+  BudgetCageOptions options = of_vertices(60);
+  options.start = CageStart::obb;
+  options.boxes.boxes.slicing.depth = 0;
+  for (const Symmetry symmetry : {Symmetry::off, Symmetry::x}) {
+    options.symmetry = symmetry;
+    const Result<BudgetCage> made = make_budget_cage(model, options);
+    ASSERT_TRUE(made) << made.error().message;
+    ASSERT_LE(made->start_vertices, 16U);
+    EXPECT_GE(made->cage.positions.size(), 55U);
+    EXPECT_LE(made->cage.positions.size(), 60U);
+    EXPECT_TRUE(is_valid(*made, model));
+    const double box = 6 / std::acos(-1); // of the ball's volume
+    EXPECT_LT(signed_volume(made->cage), 0.7 * box * signed_volume(model));
+  }
 }
 
 TEST(BudgetCage, SaysWhereAGapCannotBeKept) {

@@ -80,6 +80,27 @@ TEST_F(SpikedCage, KeepsItsTipWhereEveryCornerHasTheMostFacesAlready) {
   EXPECT_EQ(cage_.mesh.compact().triangles, before.triangles);
 }
 
+TEST_F(SpikedCage, KeepsItsShapeWhenLongEdgesAreSplit) {
+  const double volume = signed_volume(cage_.mesh.compact());
+  constexpr std::size_t asked = 80;
+  constexpr std::size_t most_valence = 8;
+  split_long_edges(cage_, guard_, asked, most_valence);
+  const TriangleMesh split = cage_.mesh.compact();
+  EXPECT_EQ(split.positions.size(), asked);
+  EXPECT_TRUE(validate_cage(split, model_)->valid());
+  EXPECT_NEAR(signed_volume(split), volume, 1e-12);
+  double longest = 0;
+  for (Index v = 0; v < split.positions.size(); ++v) {
+    const std::vector<Index> beside = cage_.mesh.neighbors(v);
+    EXPECT_LE(beside.size(), most_valence);
+    for (const Index w : beside) {
+      longest = std::max(longest, (split.positions[v] - split.positions[w]).norm());
+    }
+  }
+  const double whole = (split.positions[tip] - split.positions[1]).norm();
+  EXPECT_LT(longest, 0.7 * whole);
+}
+
 TEST_F(SpikedCage, MovesOnlyTheVerticesThatMay) {
   const TriangleMesh before = cage_.mesh.compact();
   const double value = objective_.total(cage_.mesh);
