@@ -15,8 +15,9 @@
 namespace cagewright {
 namespace {
 
-constexpr int voxels_for_pieces = 96;     // along the longest edge, to tell which pieces are apart
-constexpr int vertices_for_a_piece = 8;   // a box
+constexpr int voxels_for_pieces = 96;   // along the longest edge, to tell which pieces are apart
+constexpr int vertices_for_a_piece = 8; // a box
+constexpr int faces_for_a_piece = 2 * vertices_for_a_piece - 4;
 constexpr double largest_clearance = 0.2; // of a piece's own diagonal: smaller pieces join others
 
 /// The budget of a model, shared out by surface area.
@@ -61,8 +62,7 @@ PieceGroups fit_for_cages(TriangleView model, PieceGroups groups,
     most = static_cast<std::size_t>(options.improve.vertices / vertices_for_a_piece);
   }
   if (options.improve.faces > 0) {
-    most = std::min(
-        most, static_cast<std::size_t>(options.improve.faces / (2 * vertices_for_a_piece - 4)));
+    most = std::min(most, static_cast<std::size_t>(options.improve.faces / faces_for_a_piece));
   }
   while (groups.count > 1) {
     const std::vector<ModelPart> parts = parts_of(model, groups);
@@ -142,13 +142,34 @@ bool are_apart(const BudgetCage& a, const BudgetCage& b) {
   return true;
 }
 
+/// At most so many; 0: no limit.
+struct Budget {
+  int vertices = 0;
+  int faces = 0;
+};
+
+int vertex_count(const BudgetCage& cage) {
+  return static_cast<int>(cage.cage.positions.size());
+}
+
+int face_count(const BudgetCage& cage) {
+  return static_cast<int>(cage.polygons ? cage.polygons->face_count() : cage.cage.triangles.size());
+}
+
+/// By how much more than the budget the cages have together.
+Budget excess_of(const std::vector<std::optional<BudgetCage>>& cages, const Budget& budget) {
+  Budget excess{budget.vertices > 0 ? -budget.vertices : 0, budget.faces > 0 ? -budget.faces : 0};
+  for (const std::optional<BudgetCage>& cage : cages) {
+    excess.vertices += budget.vertices > 0 ? vertex_count(*cage) : 0;
+    excess.faces += budget.faces > 0 ? face_count(*cage) : 0;
+  }
+  return {std::max(0, excess.vertices), std::max(0, excess.faces)};
+}
+
 /// Whether a cage is as small as it may be, or could not be made so.
-bool keeps_to(const BudgetCage& cage, int vertices, int faces) {
-  const std::size_t count =
-      cage.polygons ? cage.polygons->face_count() : cage.cage.triangles.size();
-  return !cage.report.reached ||
-         ((vertices == 0 || cage.cage.positions.size() <= static_cast<std::size_t>(vertices)) &&
-          (faces == 0 || count <= static_cast<std::size_t>(faces)));
+bool keeps_to(const BudgetCage& cage, const Budget& budget) {
+  return !cage.report.reached || ((budget.vertices == 0 || vertex_count(cage) <= budget.vertices) &&
+                                  (budget.faces == 0 || face_count(cage) <= budget.faces));
 }
 
 /// Faces of both.
@@ -244,66 +265,148 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
   return all;
 }
 
+/// The cages of all groups, while they are being made.
+class PieceCages {
+public:
+  PieceCages(TriangleView model, PieceGroups groups, const BudgetCageOptions& options,
+             const MakeCage& make_one)
+      : model_(model), whole_(diagonal(model.positions)), options_(options),
+        make_one_(make_one), budget_{options.improve.vertices, options.improve.faces} {
+    set_groups(std::move(groups));
+    cages_.resize(parts_.size());
+  }
+
+  /// A cage within its share for every group that has none.
+  Status make_missing(const Progress& progress) {
+    std::vector<double> areas;
+    for (const ModelPart& part : parts_) {
+      areas.push_back(surface_area(part.mesh));
+    }
+    const std::vector<int> vertices = shares(budget_.vertices, vertices_for_a_piece, areas);
+    const std::vector<int> faces = shares(budget_.faces, faces_for_a_piece, areas);
+    const auto count = static_cast<double>(parts_.size());
+    for (std::size_t g = 0; g < parts_.size(); ++g) {
+      const Budget share = parts_.size() > 1 ? Budget{vertices[g], faces[g]} : budget_;
+      if (cages_[g] && keeps_to(*cages_[g], share)) {
+        continue;
+      }
+      Result<BudgetCage> made =
+          make(g, share,
+               progress.part(static_cast<double>(g) / count, static_cast<double>(g + 1) / count));
+      if (!made) {
+        return made.error();
+      }
+      cages_[g] = std::move(*made);
+    }
+    return success();
+  }
+
+  /// What a piece could not do without, the largest other one is asked to give.
+  Status make_up_for_stuck(const Progress& progress) {
+    const Budget excess = excess_of(cages_, budget_);
+    std::size_t largest = cages_.size();
+    for (std::size_t g = 0; g < cages_.size(); ++g) {
+      if (cages_[g]->report.reached &&
+          (largest == cages_.size() || vertex_count(*cages_[g]) > vertex_count(*cages_[largest]))) {
+        largest = g;
+      }
+    }
+    if (largest == cages_.size() || (excess.vertices == 0 && excess.faces == 0)) {
+      return success();
+    }
+    std::optional<BudgetCage>& cage = cages_[largest];
+    Budget share;
+    if (budget_.vertices > 0) {
+      share.vertices = std::max(vertices_for_a_piece, vertex_count(*cage) - excess.vertices);
+    }
+    if (budget_.faces > 0) {
+      share.faces = std::max(faces_for_a_piece, face_count(*cage) - excess.faces);
+    }
+    Result<BudgetCage> made = make(largest, share, progress);
+    if (!made) {
+      return made.error();
+    }
+    if (vertex_count(*made) < vertex_count(*cage)) {
+      cage = std::move(*made);
+    }
+    return success();
+  }
+
+  /// Joins the groups whose cages meet. The others keep theirs. \returns whether there are any
+  bool join_those_that_meet() {
+    const PieceGroups fewer = joined_groups(groups_, joins_of(cages_));
+    if (fewer.count == groups_.count) {
+      return false;
+    }
+    std::vector<std::optional<BudgetCage>> kept(fewer.count);
+    std::vector<std::size_t> members(fewer.count, 0);
+    std::vector<bool> seen(groups_.count, false);
+    for (std::size_t v = 0; v < groups_.group_of.size(); ++v) {
+      const Index g = groups_.group_of[v];
+      if (!seen[g]) {
+        seen[g] = true;
+        ++members[fewer.group_of[v]];
+        kept[fewer.group_of[v]] =
+            members[fewer.group_of[v]] == 1 ? std::move(cages_[g]) : std::optional<BudgetCage>();
+      }
+    }
+    cages_ = std::move(kept);
+    set_groups(fewer);
+    return true;
+  }
+
+  BudgetCage together() {
+    const Budget excess = excess_of(cages_, budget_);
+    BudgetCage all = gathered(cages_, parts_, whole_, options_);
+    if (options_.max_gap == 0 && excess.vertices == 0 && excess.faces == 0) {
+      all.report.reached = true;
+      all.report.why_not.clear();
+    }
+    return all;
+  }
+
+private:
+  void set_groups(PieceGroups groups) {
+    groups_ = std::move(groups);
+    parts_ = parts_of(model_, groups_);
+  }
+
+  Result<BudgetCage> make(std::size_t g, const Budget& share, const Progress& progress) const {
+    std::vector<double> density;
+    BudgetCageOptions own = options_for(parts_[g], whole_, options_, density);
+    own.improve.vertices = share.vertices;
+    own.improve.faces = share.faces;
+    return make_one_(parts_[g].mesh, own, progress);
+  }
+
+  TriangleView model_;
+  double whole_;
+  const BudgetCageOptions& options_;
+  const MakeCage& make_one_;
+  Budget budget_;
+  PieceGroups groups_;
+  std::vector<ModelPart> parts_;
+  std::vector<std::optional<BudgetCage>> cages_;
+};
+
 } // namespace
 
 Result<BudgetCage> make_pieces(TriangleView model, PieceGroups groups,
                                const BudgetCageOptions& options, const MakeCage& make_one,
                                const Progress& progress) {
   const std::size_t apart = groups.count;
-  const double whole = diagonal(model.positions);
-  groups = fit_for_cages(model, std::move(groups), options);
-  std::vector<ModelPart> parts;
-  std::vector<std::optional<BudgetCage>> cages;
-  while (true) {
-    parts = parts_of(model, groups);
-    std::vector<double> areas;
-    for (const ModelPart& part : parts) {
-      areas.push_back(surface_area(part.mesh));
+  PieceCages pieces(model, fit_for_cages(model, std::move(groups), options), options, make_one);
+  constexpr double usual = 0.9; // of the time: hardly ever is a piece stuck
+  do {
+    if (const Status made = pieces.make_missing(progress.part(0, usual)); !made) {
+      return made.error();
     }
-    const std::vector<int> vertices = shares(options.improve.vertices, vertices_for_a_piece, areas);
-    const std::vector<int> faces =
-        shares(options.improve.faces, 2 * vertices_for_a_piece - 4, areas);
-    cages.resize(parts.size());
-    for (std::size_t g = 0; g < parts.size(); ++g) {
-      if (cages[g] && keeps_to(*cages[g], vertices[g], faces[g])) {
-        continue;
-      }
-      std::vector<double> density;
-      BudgetCageOptions own = options_for(parts[g], whole, options, density);
-      own.improve.vertices = parts.size() > 1 ? vertices[g] : options.improve.vertices;
-      own.improve.faces = parts.size() > 1 ? faces[g] : options.improve.faces;
-      const auto count = static_cast<double>(parts.size());
-      Result<BudgetCage> made = make_one(
-          parts[g].mesh, own,
-          progress.part(static_cast<double>(g) / count, static_cast<double>(g + 1) / count));
-      if (!made) {
-        return made.error();
-      }
-      cages[g] = std::move(*made);
+    if (const Status made = pieces.make_up_for_stuck(progress.part(usual, 1)); !made) {
+      return made.error();
     }
-    const std::vector<std::size_t> into = joins_of(cages);
-    const PieceGroups fewer = joined_groups(groups, into);
-    if (fewer.count == groups.count) {
-      break;
-    }
-    // The cages of groups that stay as they are keep, if they still may be so large.
-    std::vector<std::optional<BudgetCage>> kept(fewer.count);
-    std::vector<std::size_t> members(fewer.count, 0);
-    std::vector<bool> seen(groups.count, false);
-    for (std::size_t v = 0; v < groups.group_of.size(); ++v) {
-      const Index g = groups.group_of[v];
-      if (!seen[g]) {
-        seen[g] = true;
-        ++members[fewer.group_of[v]];
-        kept[fewer.group_of[v]] =
-            members[fewer.group_of[v]] == 1 ? std::move(cages[g]) : std::optional<BudgetCage>();
-      }
-    }
-    cages = std::move(kept);
-    groups = fewer;
-  }
-  BudgetCage all = gathered(cages, parts, whole, options);
-  all.joined = static_cast<int>(apart - groups.count);
+  } while (pieces.join_those_that_meet());
+  BudgetCage all = pieces.together();
+  all.joined = static_cast<int>(apart) - all.pieces;
   return all;
 }
 
