@@ -178,7 +178,7 @@ private:
     if (normals_ != nullptr) {
       normals_->of_corner.push_back(normal_index(normal));
     }
-    return cursor_.at_word_end();
+    return cursor_.at_number_end();
   }
 
   [[nodiscard]] Index normal_index(const std::optional<std::int64_t>& normal) const {

@@ -171,7 +171,8 @@ public:
     return false;
   }
 
-  [[nodiscard]] bool at_word_end() const { return ends_word(at_); }
+  /// Whether a number that ends here is all of its word.
+  [[nodiscard]] bool at_number_end() const { return ends_number(at_); }
 
   /// The error "name:line: what" for the line of this position.
   [[nodiscard]] Error error(std::string_view what) const {

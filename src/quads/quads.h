@@ -35,7 +35,8 @@ struct QuadOptions {
 
 /// The share of quads among the faces that make_quads() aims at.
 inline constexpr double enough_quads = 0.7;
-/// The share of thin triangles that it stays below if it can: see QuadReport.
+/// The share of thin triangles (see QuadReport) that a cage may have and still count as well
+/// shaped.
 inline constexpr double few_thin = 0.05;
 
 struct QuadReport {

@@ -24,9 +24,10 @@ std::string message_of(std::string_view text) {
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TEST(ReadObj, KnowsEveryFormOfCorner) {
-  for (const char* face : {"f 1 2 3", "f 1/1 2/2 3/3", "f 1//1 2//2 3//3", "f 1/1/1 2/2/2 3/3/3",
-                           "f -4 -3 -2", "f -4/-1/-1 -3//-2 -2/7", "f +1 2/ 3//", "\tf  1\t2  3  ",
-                           "f 1 2 3 # done", "f 1 \\\n2 \\\r\n 3", "fo 1 2 3"}) {
+  for (const char* face :
+       {"f 1 2 3", "f 1/1 2/2 3/3", "f 1//1 2//2 3//3", "f 1/1/1 2/2/2 3/3/3", "f -4 -3 -2",
+        "f -4/-1/-1 -3//-2 -2/7", "f +1 2/ 3//", "\tf  1\t2  3  ", "f 1 2 3 # done", "f 1 2 3#done",
+        "f 1/1 2//2 3/3/3#done", "f 1 \\\n2 \\\r\n 3", "fo 1 2 3"}) {
     EXPECT_EQ(test::faces_of(read_obj(square + face)), (Faces{{0, 1, 2}})) << face;
   }
 }
