@@ -35,26 +35,30 @@ struct Candidate {
 
 class TreeBuilder {
 public:
-  TreeBuilder(const VoxelGrid& grid, const SlicingOptions& options)
-      : grid_(grid),
-        options_(options), owners_{std::vector<std::uint32_t>(grid.kinds.size(), VoxelOwners::none),
-                                   std::vector<std::uint32_t>(grid.kinds.size(), 0)} {}
+  TreeBuilder(const VoxelGrid& grid, const SlicingOptions& options, const Progress& progress)
+      : grid_(grid), options_(options),
+        progress_(progress), owners_{
+                                 std::vector<std::uint32_t>(grid.kinds.size(), VoxelOwners::none),
+                                 std::vector<std::uint32_t>(grid.kinds.size(), 0)} {}
 
-  Result<BoxTree> build(const Progress& progress) {
+  Result<BoxTree> build() {
     if (!add_root()) {
       return Error{ErrorCode::unfit_model, "the model occupies no voxel"};
     }
     std::vector<int> fresh = {0};
     while (!fresh.empty()) {
-      if (progress.cancelled()) {
+      progress_(share_done(), "cutting boxes");
+      examine(fresh);
+      if (progress_.cancelled()) {
         return Error::cancelled();
       }
-      progress(share_done(), "cutting boxes");
-      examine(fresh);
       fresh = cut_next();
     }
     if (options_.rule == SlicingRule::volume) {
       tighten_leaves();
+    }
+    if (progress_.cancelled()) {
+      return Error::cancelled();
     }
     return std::move(tree_);
   }
@@ -86,9 +90,12 @@ private:
     return options_.depth > 0 ? static_cast<double>(tree_.nodes.back().depth) / options_.depth : 1;
   }
 
+  // A level of the tree may take a long time: every box and every plane asks first whether to stop.
+  // What is left out then does not matter, since build() fails.
+
   /// Finds the f and the best cut of each new node. Nodes write only their own entries.
   void examine(const std::vector<int>& fresh) {
-    parallel_for(0, fresh.size(), 1, [&](std::size_t n) {
+    each_unless_cancelled(fresh.size(), [&](std::size_t n) {
       const auto at = static_cast<std::size_t>(fresh[n]);
       measure(at);
       candidates_[at] = best_cut(at, tree_.nodes[at].stop);
@@ -109,7 +116,7 @@ private:
   /// A box that is not cut again need not lie in the frame that was best for cutting.
   void tighten_leaves() {
     const std::vector<int> leaves = tree_.cover();
-    parallel_for(0, leaves.size(), 1, [&](std::size_t n) {
+    each_unless_cancelled(leaves.size(), [&](std::size_t n) {
       const auto at = static_cast<std::size_t>(leaves[n]);
       BoxNode& leaf = tree_.nodes[at];
       const OrientedBox smallest =
@@ -168,7 +175,7 @@ private:
   most_promising(std::size_t at, const std::vector<CutPlane>& planes,
                  const std::vector<double>& share_left) const {
     std::vector<std::optional<Candidate>> tried(planes.size());
-    parallel_for(0, planes.size(), 1, [&](std::size_t p) { tried[p] = carve(at, planes[p]); });
+    each_unless_cancelled(planes.size(), [&](std::size_t p) { tried[p] = carve(at, planes[p]); });
     std::optional<Prospect> best;
     for (std::size_t p = 0; p < tried.size(); ++p) {
       if (!tried[p]) {
@@ -191,8 +198,8 @@ private:
       planes.push_back(plane);
     }
     std::vector<double> share_left(planes.size());
-    parallel_for(0, planes.size(), 1,
-                 [&](std::size_t p) { share_left[p] = lookahead.share_left(planes[p]); });
+    each_unless_cancelled(planes.size(),
+                          [&](std::size_t p) { share_left[p] = lookahead.share_left(planes[p]); });
     return most_promising(at, planes, share_left);
   }
 
@@ -289,8 +296,17 @@ private:
     }
   }
 
+  template <class Body> void each_unless_cancelled(std::size_t count, const Body& body) const {
+    parallel_for(0, count, 1, [&](std::size_t i) {
+      if (!progress_.cancelled()) {
+        body(i);
+      }
+    });
+  }
+
   const VoxelGrid& grid_;
   const SlicingOptions& options_;
+  const Progress& progress_;
   VoxelOwners owners_;
   BoxTree tree_;
   std::vector<std::optional<Candidate>> candidates_; // for each node the cut it waits for
@@ -342,7 +358,7 @@ Result<BoxTree> build_box_tree(const VoxelGrid& grid, const SlicingOptions& opti
   if (!(options.eta > 0) || !(options.zeta > 0)) {
     return Error{ErrorCode::invalid_option, "eta and zeta must be above 0"};
   }
-  return TreeBuilder(grid, options).build(progress);
+  return TreeBuilder(grid, options, progress).build();
 }
 
 } // namespace cagewright

@@ -15,14 +15,16 @@ constexpr int coarsest = 6;
 /// Where along an axis a plane is tried, as fractions of its half-length.
 constexpr std::array<double, 5> stations = {-0.5, -0.25, 0.0, 0.25, 0.5};
 
-/// Cells of `factor` voxels a side, with an empty layer around those that hold any.
-VoxelGrid coarser(const VoxelGrid& grid, int factor) {
+using Cell = std::array<int, 3>;
+
+/// The cells from `first` to `last`, of `factor` voxels a side, in an empty layer.
+VoxelGrid coarser(const VoxelGrid& grid, int factor, const Cell& first, const Cell& last) {
   VoxelGrid coarse;
   coarse.axes = grid.axes;
   coarse.size = grid.size * factor;
-  coarse.origin = grid.to_world(Vec3::Constant(-factor));
+  coarse.origin = grid.to_world(factor * Vec3(first[0] - 1, first[1] - 1, first[2] - 1));
   for (std::size_t a = 0; a < 3; ++a) {
-    coarse.dims[a] = (grid.dims[a] + factor - 1) / factor + 2;
+    coarse.dims[a] = last[a] - first[a] + 3;
   }
   coarse.kinds.assign(coarse.index(0, 0, coarse.dims[2]), VoxelKind::outer);
   return coarse;
@@ -35,10 +37,23 @@ Lookahead::Lookahead(const VoxelGrid& grid, std::span<const std::uint32_t> voxel
     : box_(box), split_parts_(split_parts), padding_(padding) {
   const double ratio = static_cast<double>(voxels.size()) / coarse_voxels;
   const int factor = std::clamp(static_cast<int>(std::lround(std::cbrt(ratio))), 1, coarsest);
-  coarse_ = coarser(grid, factor);
+  const auto cell_of = [&](std::uint32_t voxel) {
+    const Cell c = grid.cell(voxel);
+    return Cell{c[0] / factor, c[1] / factor, c[2] / factor};
+  };
+  Cell first = cell_of(voxels.front());
+  Cell last = first;
   for (const std::uint32_t v : voxels) {
-    const std::array<int, 3> c = grid.cell(v);
-    coarse_.kinds[coarse_.index(c[0] / factor + 1, c[1] / factor + 1, c[2] / factor + 1)] =
+    const Cell c = cell_of(v);
+    for (std::size_t a = 0; a < 3; ++a) {
+      first[a] = std::min(first[a], c[a]);
+      last[a] = std::max(last[a], c[a]);
+    }
+  }
+  coarse_ = coarser(grid, factor, first, last);
+  for (const std::uint32_t v : voxels) {
+    const Cell c = cell_of(v);
+    coarse_.kinds[coarse_.index(c[0] - first[0] + 1, c[1] - first[1] + 1, c[2] - first[2] + 1)] =
         VoxelKind::inner;
   }
   for (std::uint32_t v = 0; v < coarse_.kinds.size(); ++v) {

@@ -20,7 +20,7 @@ namespace cagewright {
 /// that is left after each of its parts has been cut once more.
 class Lookahead {
 public:
-  /// \param voxels  of the part, in a grid whose outermost layer is empty
+  /// \param voxels  of the part, at least one, in a grid whose outermost layer is empty
   /// \param padding length by which boxes reach beyond their voxels
   Lookahead(const VoxelGrid& grid, std::span<const std::uint32_t> voxels, const OrientedBox& box,
             bool split_parts, double padding);
