@@ -2,6 +2,7 @@
 
 #include "improve/refine.h"
 #include "improve/relax.h"
+#include "improve/shave.h"
 #include "improve/simplify.h"
 #include "mesh/measures.h"
 
@@ -189,10 +190,10 @@ private:
   }
 
   // The objective hardly feels a thin spike, but users see it first. Tips that stand off the model
-  // far more than the rest of the cage are split, and vertices elsewhere are given for that, as
-  // long as it costs little.
+  // far more than the rest of the cage are drawn in with all round them; or split, and vertices
+  // elsewhere are given for that, as long as it costs little.
   void blunt_tips(double value, const Progress& progress) {
-    constexpr int attempts = 4;
+    constexpr int attempts = 8;
     constexpr int patience = 2;
     int in_vain = 0;
     std::vector<Index> tried;
@@ -205,8 +206,14 @@ private:
       const WorkingCage kept = cage_;
       double after = value;
       constexpr double nearer = 0.9;
-      bool better = split_tip(cage_, guard_, objective_, tip->vertex, most_valence_) &&
-                    distance_of(tip->vertex) < nearer * tip->distance;
+      const std::size_t before = cage_.mesh.vertex_count();
+      bool better = shave_tip(cage_, guard_, objective_, tip->vertex, most_valence_);
+      if (better) {
+        split_edges(cage_, guard_, objective_, before - cage_.mesh.vertex_count(), most_valence_);
+      } else {
+        better = split_tip(cage_, guard_, objective_, tip->vertex, most_valence_) &&
+                 distance_of(tip->vertex) < nearer * tip->distance;
+      }
       if (better) {
         constexpr double shorter = 0.75;
         objective_.limit_gap(std::max(shorter * tip->distance, farthest()));
