@@ -183,6 +183,12 @@ bool rings_cost_much(const QuadTask& task, const QuadStage& with, const Progress
          with.report.objective > much * without->report.objective;
 }
 
+/// What decides between two cages, in the order of weight: the budget, enough quads, round faces.
+std::tuple<bool, double, double> merit(const QuadStage& stage) {
+  const QuadReport& made = stage.made.report;
+  return {stage.report.reached, std::min(made.share, enough_quads), -std::max(made.thin, few_thin)};
+}
+
 /// The same with the rings, or without if they cost much, or do not leave enough vertices, enough
 /// quads or round enough faces.
 Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads,
@@ -198,33 +204,16 @@ Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads,
     return with;
   }
   Result<QuadStage> without = paired_quads(task, {}, quads, progress.part(compared, 1));
-  // In the order of weight: the budget, enough quads, round faces.
-  const auto merit = [](const QuadStage& stage) {
-    const QuadReport& made = stage.made.report;
-    return std::tuple(stage.report.reached, std::min(made.share, enough_quads),
-                      -std::max(made.thin, few_thin));
-  };
   const bool is_better =
       without && (much ? merit(*without) >= merit(*with) : merit(*without) > merit(*with));
   return !without || is_better ? std::move(without) : std::move(with);
 }
 
-} // namespace
-
-double greatest_gap_of_quads(const PolygonMesh& cage, const TriangleBvh& model, double tolerance) {
-  return std::max(greatest_gap(cut(cage, 0), model, tolerance).upper,
-                  greatest_gap(cut(cage, 1), model, tolerance).upper);
-}
-
-Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& progress) {
+/// The better one of quads made of triangles, and of blocks.
+Result<QuadStage> best_quads(const QuadTask& task, const QuadOptions& quads,
+                             const Progress& progress) {
   const BudgetCageOptions& options = task.options;
   const ImproveOptions& budget = task.budget;
-  QuadOptions quads = options.quad_options;
-  quads.clearance = budget.clearance;
-  quads.square = budget.square;
-  quads.shape = budget.shape;
-  quads.density = budget.density;
-  quads.diagonal = task.diagonal;
   // Of blocks nothing is known about the greatest gap.
   const bool try_blocks = options.max_gap == 0 && (budget.vertices > 0 || budget.faces > 0);
   constexpr double paired = 0.5; // of the time
@@ -253,6 +242,35 @@ Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& pro
       (loosest == 0 ||
        (loose(*blocks) <= loosest && volume(*blocks) <= most.volume * volume(*pairs)));
   return is_better ? blocks : pairs;
+}
+
+} // namespace
+
+double greatest_gap_of_quads(const PolygonMesh& cage, const TriangleBvh& model, double tolerance) {
+  return std::max(greatest_gap(cut(cage, 0), model, tolerance).upper,
+                  greatest_gap(cut(cage, 1), model, tolerance).upper);
+}
+
+Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& progress) {
+  const BudgetCageOptions& options = task.options;
+  const ImproveOptions& budget = task.budget;
+  QuadOptions quads = options.quad_options;
+  quads.clearance = budget.clearance;
+  quads.square = budget.square;
+  quads.shape = budget.shape;
+  quads.density = budget.density;
+  quads.diagonal = task.diagonal;
+  constexpr double usual = 0.9; // of the time: hardly ever is there another try
+  Result<QuadStage> made = best_quads(task, quads, progress.part(0, usual));
+  if (!made || !made->report.reached || options.max_gap > 0 || is_well_shaped(made->made.report)) {
+    return made;
+  }
+  constexpr double dearer = 2;
+  quads.shape *= dearer;
+  Result<QuadStage> again = best_quads(task, quads, progress.part(usual, 1));
+  const bool is_cancelled = !again && again.error().code == ErrorCode::cancelled;
+  return is_cancelled || (again && merit(*again) > merit(*made)) ? std::move(again)
+                                                                 : std::move(made);
 }
 
 } // namespace cagewright
