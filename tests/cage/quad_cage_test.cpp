@@ -4,6 +4,7 @@
 #include "mesh/triangulate.h"
 #include "spatial/bvh.h"
 #include "support/figures.h"
+#include "support/models.h"
 #include "support/quads.h"
 #include "validate/greatest_gap.h"
 #include "validate/validate_cage.h"
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -73,6 +75,25 @@ TEST(QuadCageWithinABudget, CountsAQuadAsOneFace) {
   EXPECT_TRUE(made->report.reached) << made->report.why_not;
   EXPECT_LE(made->polygons->face_count(), 40U);
   EXPECT_GT(made->cage.triangles.size(), 40U);
+}
+
+// Three of its vertices are of no face and far away. What reaches out to them is thin, or left in
+// triangles, at the usual weights: half of the faces would be quads.
+TEST(QuadCageWithinABudget, IsTriedAgainWithMoreWeightOnShape) {
+  const std::optional<TriangleMesh> model = test::real_model({"prim.off"});
+  if (!model) {
+    GTEST_SKIP() << "prim.off is not there";
+  }
+  BudgetCageOptions options;
+  options.quads = true;
+  options.improve.vertices = 32;
+  options.symmetry = Symmetry::automatic;
+  const Result<BudgetCage> made = make_budget_cage(*model, options);
+  ASSERT_TRUE(made && made->quads && made->polygons);
+  EXPECT_LE(made->polygons->positions.size(), 32U);
+  EXPECT_GE(made->quads->share, 0.6);
+  EXPECT_LE(made->quads->thin, few_thin);
+  EXPECT_TRUE(validate_cage(*made->polygons, *model)->valid());
 }
 
 TEST(QuadCageWithinABudget, MayBeInPieces) {
