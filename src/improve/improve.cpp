@@ -209,7 +209,8 @@ private:
       const std::size_t before = cage_.mesh.vertex_count();
       bool better = shave_tip(cage_, guard_, objective_, tip->vertex, most_valence_);
       if (better) {
-        // More than were saved: of a few the most promising are often not the ones that can be made.
+        // More than were saved: of a few the most promising are often not the ones that can be
+        // made.
         const std::size_t more = std::max(fewest, budget_ / 8);
         split_edges(cage_, guard_, objective_, before - cage_.mesh.vertex_count() + more,
                     most_valence_);
