@@ -45,6 +45,14 @@ struct Errors {
   double high = 0;
 };
 
+double mean_of(std::span<const double> numbers) {
+  double mean = 0;
+  for (const double x : numbers) {
+    mean += x / static_cast<double>(numbers.size());
+  }
+  return mean;
+}
+
 /// The surface in coordinates where its middle is the origin and its diagonal 1.
 class Surface {
 public:
@@ -125,9 +133,7 @@ public:
     std::vector<double> d(at.size());
     parallel_for(0, at.size(), 64, [&](std::size_t i) { d[i] = distance(plane, at[i], most); });
     Errors e;
-    for (const double x : d) {
-      e.mean += x / static_cast<double>(d.size());
-    }
+    e.mean = mean_of(d);
     const auto high = d.begin() + static_cast<std::ptrdiff_t>(d.size() * 99 / 100);
     std::nth_element(d.begin(), high, d.end());
     e.high = *high;
@@ -206,13 +212,16 @@ std::array<Vec3, 2> tangents(const Vec3& n) {
 
 /// Turns and shifts the plane (or shifts it only) until the mirror images of the points come
 /// nearest to the surface: iterated least squares of their distances along the directions to their
-/// nearest points, in which distant pairs count less and less (Geman and McClure's weights).
-Plane refined(const Surface& surface, Plane plane, bool turn, std::size_t count = some) {
+/// nearest points, in which distant pairs count less and less (Geman and McClure's weights). It
+/// ends early where the mean distance hardly falls any more and is not `hopeful` yet.
+Plane refined(const Surface& surface, Plane plane, bool turn, std::size_t count = some,
+              double hopeful = std::numeric_limits<double>::infinity()) {
   const std::span<const Vec3> points = surface.points(count);
   std::vector<NearestPoint> nearest(points.size());
   std::vector<Vec3> images(points.size());
   constexpr int most_steps = 20;
   double damping = 1e-3;
+  double before = std::numeric_limits<double>::infinity(); // the mean distance `patience` steps ago
   for (int step = 0; step < most_steps; ++step) {
     parallel_for(0, points.size(), 32, [&](std::size_t i) {
       images[i] = mirrored(plane, points[i]);
@@ -221,6 +230,15 @@ Plane refined(const Surface& surface, Plane plane, bool turn, std::size_t count 
     std::vector<double> distances(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       distances[i] = nearest[i] ? nearest[i].distance : astray;
+    }
+    constexpr int patience = 3;
+    if (step % patience == 0) {
+      const double mean = mean_of(distances);
+      constexpr double progress = 0.97;
+      if (mean > hopeful && mean > progress * before) {
+        break;
+      }
+      before = mean;
     }
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
@@ -448,7 +466,9 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
   }
   std::stable_sort(best.begin(), best.end(),
                    [](const Judged& a, const Judged& b) { return a.errors.mean < b.errors.mean; });
-  const double hopeless = best.front().errors.mean + 3 * options.most_mean_error;
+  const double hopeful = 1.5 * options.most_mean_error + even;
+  const double hopeless =
+      std::min(best.front().errors.mean + 3 * options.most_mean_error, 3 * hopeful);
   std::erase_if(best, [&](const Judged& candidate) { return candidate.errors.mean > hopeless; });
   std::optional<Judged> chosen;
   int chosen_rank = 0;
@@ -456,8 +476,7 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
     if (progress.cancelled()) {
       return std::nullopt;
     }
-    const Plane turned = refined(surface, candidate.plane, true);
-    const double hopeful = 4 * options.most_mean_error + 2 * even;
+    const Plane turned = refined(surface, candidate.plane, true, some, hopeful);
     if (std::min(candidate.errors.mean, surface.errors(turned, some, astray).mean) > hopeful) {
       continue;
     }
