@@ -4,6 +4,7 @@
 #include "cage/budget_start.h"
 #include "cage/improve_to_gap.h"
 #include "cage/limb_rings.h"
+#include "cage/mirrored_pieces.h"
 #include "cage/not_valid.h"
 #include "cage/pieces.h"
 #include "cage/quad_stage.h"
@@ -61,7 +62,9 @@ Result<Improved> within_gap(TriangleView start, TriangleView model,
 constexpr int voxels_for_pieces = 96; // along the longest edge, to tell which pieces are apart
 
 /// One closed surface for the whole model, from one start.
+/// \param plane  to mirror it in, if that is known; else the options say whether to look for one
 Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptions& options,
+                                       const std::optional<MirrorPlane>& plane,
                                        const Progress& progress) {
   if (const Result<UnitFrame> frame = unit_frame(model); !frame) {
     return frame.error();
@@ -69,10 +72,12 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
   BudgetCage made;
   made.clearance_asked = options.improve.clearance;
   Stopwatch watch(made.times);
-  if (options.symmetry != Symmetry::off) {
-    const ChosenPlane chosen =
-        choose_mirror_plane(model, options.symmetry, progress.part(0, started / 2));
-    watch.lap("symmetry");
+  if (plane || options.symmetry != Symmetry::off) {
+    ChosenPlane chosen{plane, ""};
+    if (!plane) {
+      chosen = choose_mirror_plane(model, options.symmetry, progress.part(0, started / 2));
+      watch.lap("symmetry");
+    }
     made.why_not_mirrored = chosen.why_not;
     if (chosen.plane) {
       Result<BudgetCage> symmetric =
@@ -82,7 +87,7 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
         symmetric->times.insert(symmetric->times.begin(), made.times.begin(), made.times.end());
         return symmetric;
       }
-      const bool insist = options.symmetry != Symmetry::automatic;
+      const bool insist = plane || options.symmetry != Symmetry::automatic;
       if (insist || symmetric.error().code == ErrorCode::cancelled) {
         return symmetric.error();
       }
@@ -163,9 +168,10 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
 /// round, though it seemed enough for them, more of them are filled, and all if need be: a knot has
 /// but one, and it takes many vertices to go along it.
 Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& options,
+                                  const std::optional<MirrorPlane>& plane,
                                   const Progress& progress) {
   constexpr double usual = 0.9; // of the time: hardly ever is there another start
-  Result<BudgetCage> made = make_from_one_start(model, options, progress.part(0, usual));
+  Result<BudgetCage> made = make_from_one_start(model, options, plane, progress.part(0, usual));
   const bool is_chosen = options.resolution == 0 && options.envelope_vertices == 0;
   if (!made || !is_chosen || options.max_gap > 0) {
     return made;
@@ -179,7 +185,8 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
     BudgetCageOptions simpler = options;
     simpler.envelope_vertices = vertices;
     const double then = (done + 1) / 2;
-    Result<BudgetCage> again = make_from_one_start(model, simpler, progress.part(done, then));
+    Result<BudgetCage> again =
+        make_from_one_start(model, simpler, plane, progress.part(done, then));
     done = then;
     if (!again && again.error().code == ErrorCode::cancelled) {
       return again;
@@ -196,14 +203,41 @@ std::string why_not_to_mirror(const BudgetCageOptions& options) {
   if (options.symmetry == Symmetry::off) {
     return "";
   }
-  if (options.boxes.boxes.pieces == Pieces::apart) {
-    return "cages in pieces cannot be mirrored yet";
-  }
   // It would count on both sides.
   if (options.symmetry == Symmetry::automatic && !options.improve.density.empty()) {
     return "a density need not be the same on both sides";
   }
   return "";
+}
+
+/// Judged against the model, as a cage of several pieces.
+Result<BudgetCage> judged_in_pieces(Result<BudgetCage> made, TriangleView model,
+                                    const Progress& progress) {
+  if (!made) {
+    return made;
+  }
+  const ValidateOptions in_pieces{.allow_pieces = true, .first_only = true};
+  const Result<ValidityReport> validity =
+      made->polygons ? validate_cage(*made->polygons, model, in_pieces, progress)
+                     : validate_cage(made->cage, model, in_pieces, progress);
+  if (!validity) {
+    return validity.error();
+  }
+  return validity->valid() ? std::move(made) : not_valid(*validity, remedy);
+}
+
+Result<BudgetCage> make_mirrored(TriangleView model, const MirrorPlane& plane,
+                                 const BudgetCageOptions& options, const Progress& progress) {
+  const MakeMirrored make{
+      [&](TriangleView part, const BudgetCageOptions& own, const Progress& share) {
+        return make_one_piece(part, own, plane, share);
+      },
+      [](TriangleView side, const BudgetCageOptions& own, const Progress& share) {
+        return make_one_piece(side, own, std::nullopt, share);
+      }};
+  return judged_in_pieces(make_mirrored_pieces(model, plane, voxels_for_pieces, options, make,
+                                               progress.part(0, improved)),
+                          model, progress.part(improved, 1));
 }
 
 /// A closed surface for each group of pieces that are apart.
@@ -221,25 +255,37 @@ Result<BudgetCage> make_all_pieces(TriangleView model, const BudgetCageOptions& 
   if (!groups) {
     return groups.error();
   }
+  BudgetCageOptions plain = options;
   if (groups->count == 1) {
-    BudgetCageOptions one = options;
-    one.boxes.boxes.pieces = Pieces::together;
-    return make_one_piece(model, one, progress);
+    plain.boxes.boxes.pieces = Pieces::together;
+    return make_one_piece(model, plain, std::nullopt, progress);
   }
+  ChosenPlane chosen = choose_mirror_plane(model, options.symmetry, progress.part(0, started / 2));
+  if (chosen.plane) {
+    Result<BudgetCage> mirrored =
+        make_mirrored(model, *chosen.plane, options, progress.part(started / 2, 1));
+    if (mirrored || options.symmetry != Symmetry::automatic ||
+        mirrored.error().code == ErrorCode::cancelled) {
+      return mirrored;
+    }
+    chosen.why_not = mirrored.error().message;
+  }
+  plain.symmetry = Symmetry::off;
+  const PieceMaker maker{
+      [](TriangleView part, const BudgetCageOptions& own, const Progress& share) {
+        return make_one_piece(part, own, std::nullopt, share);
+      },
+      [](TriangleView part) {
+        return AlikeSurfaces{{{part.positions.begin(), part.positions.end()},
+                              {part.triangles.begin(), part.triangles.end()}}};
+      }};
   Result<BudgetCage> made =
-      make_pieces(model, *groups, options, make_one_piece, progress.part(0, improved));
-  if (!made) {
-    return made;
+      make_pieces(model, *groups, plain, maker, progress.part(started / 2, improved));
+  if (made) {
+    made->joined = static_cast<int>(groups->count) - made->pieces;
+    made->why_not_mirrored = chosen.why_not;
   }
-  const ValidateOptions in_pieces{.allow_pieces = true, .first_only = true};
-  const Progress checking = progress.part(improved, 1);
-  const Result<ValidityReport> validity =
-      made->polygons ? validate_cage(*made->polygons, model, in_pieces, checking)
-                     : validate_cage(made->cage, model, in_pieces, checking);
-  if (!validity) {
-    return validity.error();
-  }
-  return validity->valid() ? std::move(made) : not_valid(*validity, remedy);
+  return judged_in_pieces(std::move(made), model, progress.part(improved, 1));
 }
 
 } // namespace
@@ -262,7 +308,7 @@ Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions&
   }
   Result<BudgetCage> made = options.boxes.boxes.pieces == Pieces::apart
                                 ? make_all_pieces(model, options, progress)
-                                : make_one_piece(model, options, progress);
+                                : make_one_piece(model, options, std::nullopt, progress);
   if (made && !why_not.empty()) {
     made->why_not_mirrored = why_not;
   }

@@ -43,7 +43,7 @@ struct BudgetCageOptions {
   /// a closed cage of its own, and a share of the budget by its surface area; groups whose cages
   /// would meet or lie one within another, or that are too small for the budget, are joined.
   GenerateOptions boxes = {};
-  Symmetry symmetry = Symmetry::off; ///< not with Pieces::apart
+  Symmetry symmetry = Symmetry::off;
   /// Quads where they can be. A quad counts as one face. The clearance, the density and the
   /// objective are those of `improve`.
   bool quads = false;

@@ -1,5 +1,6 @@
 #include "cage/budget_pieces.h"
 
+#include "cage/part_options.h"
 #include "cage/unit_frame.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -15,25 +17,23 @@
 namespace cagewright {
 namespace {
 
-constexpr int voxels_for_pieces = 96;   // along the longest edge, to tell which pieces are apart
-constexpr int vertices_for_a_piece = 8; // a box
-constexpr int faces_for_a_piece = 2 * vertices_for_a_piece - 4;
 constexpr double largest_clearance = 0.2; // of a piece's own diagonal: smaller pieces join others
 
-/// The budget of a model, shared out by surface area.
-std::vector<int> shares(int budget, int least, const std::vector<double>& areas) {
+/// The budget of a model, shared out by surface area, `least` for each of a part's surfaces.
+std::vector<int> shares(int budget, int least, const std::vector<double>& areas,
+                        const std::vector<int>& surfaces) {
   std::vector<int> share(areas.size(), budget);
   if (budget == 0) { // no limit
     return share;
   }
   const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
-  int left = budget - least * static_cast<int>(areas.size());
+  int left = budget - least * std::accumulate(surfaces.begin(), surfaces.end(), 0);
   const int to_share = left;
   for (std::size_t g = 0; g < areas.size(); ++g) {
     const double part = all > 0 ? areas[g] / all : 0;
     share[g] = static_cast<int>(std::floor(part * to_share));
     left -= share[g];
-    share[g] += least;
+    share[g] += least * surfaces[g];
   }
   const auto largest = std::max_element(areas.begin(), areas.end());
   share[static_cast<std::size_t>(largest - areas.begin())] += left;
@@ -54,31 +54,38 @@ std::size_t nearest_group(std::size_t g, const std::vector<Box3>& boxes) {
 
 /// Joins groups to the nearest other one until each can have a cage of its own: a surface of some
 /// extent, larger than the clearance, and vertices enough.
-PieceGroups fit_for_cages(TriangleView model, PieceGroups groups,
-                          const BudgetCageOptions& options) {
+PieceGroups fit_for_cages(TriangleView model, PieceGroups groups, const BudgetCageOptions& options,
+                          const PieceMaker& maker) {
   const double clearance = options.improve.clearance * diagonal(model.positions);
-  std::size_t most = groups.count;
+  int most = std::numeric_limits<int>::max();
   if (options.improve.vertices > 0) {
-    most = static_cast<std::size_t>(options.improve.vertices / vertices_for_a_piece);
+    most = options.improve.vertices / vertices_for_a_piece;
   }
   if (options.improve.faces > 0) {
-    most = std::min(most, static_cast<std::size_t>(options.improve.faces / faces_for_a_piece));
+    most = std::min(most, options.improve.faces / faces_for_a_piece);
   }
   while (groups.count > 1) {
     const std::vector<ModelPart> parts = parts_of(model, groups);
     std::vector<Box3> boxes;
     std::size_t smallest = 0;
+    double smallest_size = std::numeric_limits<double>::infinity();
     std::size_t unfit = groups.count;
+    int surfaces = 0;
     for (std::size_t g = 0; g < parts.size(); ++g) {
       boxes.push_back(bounding_box(parts[g].mesh.positions));
-      const double size = boxes[g].diagonal().norm();
-      smallest = size < boxes[smallest].diagonal().norm() ? g : smallest;
+      const AlikeSurfaces alike = maker.surfaces(parts[g].mesh);
+      surfaces += alike.count;
+      const double size = diagonal(alike.model.positions);
+      if (size < smallest_size) {
+        smallest = g;
+        smallest_size = size;
+      }
       if (unfit == groups.count &&
-          (!unit_frame(parts[g].mesh) || clearance > largest_clearance * size)) {
+          (!unit_frame(alike.model) || clearance > largest_clearance * size)) {
         unfit = g;
       }
     }
-    if (unfit == groups.count && groups.count <= std::max<std::size_t>(1, most)) {
+    if (unfit == groups.count && surfaces <= most) {
       break;
     }
     std::vector<std::size_t> into(groups.count);
@@ -88,28 +95,6 @@ PieceGroups fit_for_cages(TriangleView model, PieceGroups groups,
     groups = joined_groups(groups, into);
   }
   return groups;
-}
-
-/// The options for a part of the model: lengths are stated in the part's own diagonals.
-BudgetCageOptions options_for(const ModelPart& part, double whole, const BudgetCageOptions& options,
-                              std::vector<double>& density) {
-  BudgetCageOptions own = options;
-  const double factor = whole / diagonal(part.mesh.positions);
-  own.boxes.boxes.pieces = Pieces::together;
-  own.improve.clearance *= factor;
-  own.max_gap *= factor;
-  own.closing = std::min(0.5, own.closing * factor);
-  if (own.resolution > 0) {
-    own.resolution = std::max(8, static_cast<int>(std::lround(own.resolution / factor)));
-  }
-  if (!options.improve.density.empty()) {
-    density.clear();
-    for (const Index v : part.vertices) {
-      density.push_back(options.improve.density[v]);
-    }
-    own.improve.density = density;
-  }
-  return own;
 }
 
 /// The triangles that the cage may be cut into: along the first diagonals of its quads, and along
@@ -219,6 +204,19 @@ void add_times(std::vector<StageTime>& times, const std::vector<StageTime>& more
   }
 }
 
+/// Adds the pairs of a cage whose first vertex and face get these numbers.
+void add_pairs(MirrorPairing& pairing, const MirrorPairing& more, std::size_t vertices,
+               std::size_t faces) {
+  for (const Index v : more.vertex_partners) {
+    pairing.vertex_partners.push_back(v + static_cast<Index>(vertices));
+  }
+  for (const Index f : more.face_partners) {
+    pairing.face_partners.push_back(f + static_cast<Index>(faces));
+  }
+  pairing.plane = more.plane;
+  pairing.error = std::max(pairing.error, more.error);
+}
+
 /// All cages as one, and what is known of them together.
 BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
                     const std::vector<ModelPart>& parts, double whole,
@@ -230,7 +228,11 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
   all.pieces = 0;
   for (std::size_t g = 0; g < cages.size(); ++g) {
     BudgetCage& cage = *cages[g];
-    const double factor = diagonal(parts[g].mesh.positions) / whole;
+    restate(cage, diagonal(parts[g].mesh.positions) / whole);
+    if (cage.mirror) {
+      add_pairs(all.mirror ? *all.mirror : all.mirror.emplace(), *cage.mirror,
+                all.cage.positions.size(), static_cast<std::size_t>(face_count(all)));
+    }
     for (std::vector<Index>& ring : cage.limb_rings) {
       for (Index& v : ring) {
         v += static_cast<Index>(all.polygons ? all.polygons->positions.size() : 0);
@@ -243,10 +245,10 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
       all.quads = report_of(*all.polygons);
     }
     constexpr double rounding = 1e-12;
-    if (cage.clearance * factor < (1 - rounding) * all.clearance) {
-      all.clearance = cage.clearance * factor;
+    if (cage.clearance < (1 - rounding) * all.clearance) {
+      all.clearance = cage.clearance;
     }
-    all.report.objective += cage.report.objective * factor * factor * factor;
+    all.report.objective += cage.report.objective;
     all.report.simplify_seconds += cage.report.simplify_seconds;
     all.report.refine_seconds += cage.report.refine_seconds;
     if (!cage.report.reached) {
@@ -254,12 +256,12 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
       all.report.why_not = cage.report.why_not;
     }
     if (cage.gap) {
-      all.gap = std::max(all.gap.value_or(0), *cage.gap * factor);
+      all.gap = std::max(all.gap.value_or(0), *cage.gap);
     }
     all.start_vertices += cage.start_vertices;
     all.resolution = std::max(all.resolution, cage.resolution);
     all.bridges += cage.bridges;
-    ++all.pieces;
+    all.pieces += cage.pieces;
     add_times(all.times, cage.times);
   }
   return all;
@@ -269,9 +271,9 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
 class PieceCages {
 public:
   PieceCages(TriangleView model, PieceGroups groups, const BudgetCageOptions& options,
-             const MakeCage& make_one)
+             const PieceMaker& maker)
       : model_(model), whole_(diagonal(model.positions)), options_(options),
-        make_one_(make_one), budget_{options.improve.vertices, options.improve.faces} {
+        maker_(maker), budget_{options.improve.vertices, options.improve.faces} {
     set_groups(std::move(groups));
     cages_.resize(parts_.size());
   }
@@ -279,11 +281,14 @@ public:
   /// A cage within its share for every group that has none.
   Status make_missing(const Progress& progress) {
     std::vector<double> areas;
+    std::vector<int> surfaces;
     for (const ModelPart& part : parts_) {
       areas.push_back(surface_area(part.mesh));
+      surfaces.push_back(maker_.surfaces(part.mesh).count);
     }
-    const std::vector<int> vertices = shares(budget_.vertices, vertices_for_a_piece, areas);
-    const std::vector<int> faces = shares(budget_.faces, faces_for_a_piece, areas);
+    const std::vector<int> vertices =
+        shares(budget_.vertices, vertices_for_a_piece, areas, surfaces);
+    const std::vector<int> faces = shares(budget_.faces, faces_for_a_piece, areas, surfaces);
     const auto count = static_cast<double>(parts_.size());
     for (std::size_t g = 0; g < parts_.size(); ++g) {
       const Budget share = parts_.size() > 1 ? Budget{vertices[g], faces[g]} : budget_;
@@ -317,10 +322,11 @@ public:
     std::optional<BudgetCage>& cage = cages_[largest];
     Budget share;
     if (budget_.vertices > 0) {
-      share.vertices = std::max(vertices_for_a_piece, vertex_count(*cage) - excess.vertices);
+      share.vertices =
+          std::max(cage->pieces * vertices_for_a_piece, vertex_count(*cage) - excess.vertices);
     }
     if (budget_.faces > 0) {
-      share.faces = std::max(faces_for_a_piece, face_count(*cage) - excess.faces);
+      share.faces = std::max(cage->pieces * faces_for_a_piece, face_count(*cage) - excess.faces);
     }
     Result<BudgetCage> made = make(largest, share, progress);
     if (!made) {
@@ -372,17 +378,16 @@ private:
   }
 
   Result<BudgetCage> make(std::size_t g, const Budget& share, const Progress& progress) const {
-    std::vector<double> density;
-    BudgetCageOptions own = options_for(parts_[g], whole_, options_, density);
-    own.improve.vertices = share.vertices;
-    own.improve.faces = share.faces;
-    return make_one_(parts_[g].mesh, own, progress);
+    PartOptions own = options_for(parts_[g], whole_, options_);
+    own.options.improve.vertices = share.vertices;
+    own.options.improve.faces = share.faces;
+    return maker_.make(parts_[g].mesh, own.options, progress);
   }
 
   TriangleView model_;
   double whole_;
   const BudgetCageOptions& options_;
-  const MakeCage& make_one_;
+  const PieceMaker& maker_;
   Budget budget_;
   PieceGroups groups_;
   std::vector<ModelPart> parts_;
@@ -392,10 +397,9 @@ private:
 } // namespace
 
 Result<BudgetCage> make_pieces(TriangleView model, PieceGroups groups,
-                               const BudgetCageOptions& options, const MakeCage& make_one,
+                               const BudgetCageOptions& options, const PieceMaker& maker,
                                const Progress& progress) {
-  const std::size_t apart = groups.count;
-  PieceCages pieces(model, fit_for_cages(model, std::move(groups), options), options, make_one);
+  PieceCages pieces(model, fit_for_cages(model, std::move(groups), options, maker), options, maker);
   constexpr double usual = 0.9; // of the time: hardly ever is a piece stuck
   do {
     if (const Status made = pieces.make_missing(progress.part(0, usual)); !made) {
@@ -405,9 +409,7 @@ Result<BudgetCage> make_pieces(TriangleView model, PieceGroups groups,
       return made.error();
     }
   } while (pieces.join_those_that_meet());
-  BudgetCage all = pieces.together();
-  all.joined = static_cast<int>(apart) - all.pieces;
-  return all;
+  return pieces.together();
 }
 
 } // namespace cagewright

@@ -68,8 +68,13 @@ Result<QuadStage> quads_of_blocks(TriangleView model, const QuadOptions& quads,
   return stage;
 }
 
-bool is_well_shaped(const QuadReport& quads) {
+/// Whether enough faces are quads, and round. There may be a needle.
+bool is_mostly_good(const QuadReport& quads) {
   return quads.share >= enough_quads && quads.thin <= few_thin;
+}
+
+bool is_well_shaped(const QuadReport& quads) {
+  return is_mostly_good(quads) && quads.least_quality >= needle;
 }
 
 /// How much more a cage of blocks may have than quads made of triangles. It is all quads, in strips
@@ -83,7 +88,7 @@ struct MostMore {
 };
 
 MostMore most_more(const Quadrangulated& pairs) {
-  if (!is_well_shaped(pairs.report)) {
+  if (!is_mostly_good(pairs.report)) {
     return {2, 1.25};
   }
   const bool has_rings = std::any_of(pairs.parts.begin(), pairs.parts.end(),
@@ -183,10 +188,12 @@ bool rings_cost_much(const QuadTask& task, const QuadStage& with, const Progress
          with.report.objective > much * without->report.objective;
 }
 
-/// What decides between two cages, in the order of weight: the budget, enough quads, round faces.
-std::tuple<bool, double, double> merit(const QuadStage& stage) {
+/// What decides between two cages, in the order of weight: the budget, enough quads, no needles,
+/// round faces.
+std::tuple<bool, double, double, double> merit(const QuadStage& stage) {
   const QuadReport& made = stage.made.report;
-  return {stage.report.reached, std::min(made.share, enough_quads), -std::max(made.thin, few_thin)};
+  return {stage.report.reached, std::min(made.share, enough_quads),
+          std::min(made.least_quality, needle), -std::max(made.thin, few_thin)};
 }
 
 /// The same with the rings, or without if they cost much, or do not leave enough vertices, enough
@@ -238,7 +245,7 @@ Result<QuadStage> best_quads(const QuadTask& task, const QuadOptions& quads,
   };
   const bool is_better =
       blocks && blocks->report.reached &&
-      (blocks->made.report.thin <= few_thin || !is_well_shaped(pairs->made.report)) &&
+      (blocks->made.report.thin <= few_thin || !is_mostly_good(pairs->made.report)) &&
       (loosest == 0 ||
        (loose(*blocks) <= loosest && volume(*blocks) <= most.volume * volume(*pairs)));
   return is_better ? blocks : pairs;

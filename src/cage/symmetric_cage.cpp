@@ -46,17 +46,9 @@ constexpr const char* remedy = "try another resolution, or --symmetry off";
 TriangleMesh with_image(const Task& task) {
   TriangleMesh model{{task.model.positions.begin(), task.model.positions.end()},
                      {task.model.triangles.begin(), task.model.triangles.end()}};
-  if (task.frame.plane().high_error < same) {
-    return model;
-  }
-  TriangleMesh image = model;
-  for (Vec3& p : image.positions) {
-    p = task.frame.plane().mirrored(p);
-  }
-  for (Triangle& t : image.triangles) {
-    std::swap(t[1], t[2]);
-  }
-  return joined(model, image);
+  return task.frame.plane().high_error < same
+             ? model
+             : joined(model, mirror_image(task.model, task.frame.plane()));
 }
 
 Result<TriangleMesh> half_of_boxes(const Task& task, const BudgetCageOptions& options,

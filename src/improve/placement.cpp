@@ -268,6 +268,21 @@ void add_band(const SeamBand& band, const Vec3& origin, std::vector<HalfSpace>& 
   spaces.push_back({-band.normal, band.half_width - middle});
 }
 
+// The place in the band nearest to p, with `in_plane` of those with the same x. None: there is
+// none.
+std::optional<Vec3> nearest_in_band(const SeamBand& band, const Vec3& p, bool in_plane) {
+  const Vec3 nearest = band.nearest(p);
+  if (!in_plane || nearest == p) {
+    return nearest;
+  }
+  const Vec3 across(0, band.normal.y(), band.normal.z());
+  constexpr double parallel = 1e-6;
+  if (across.norm() < parallel) {
+    return std::nullopt;
+  }
+  return p + (band.height(nearest) - band.height(p)) / across.squaredNorm() * across;
+}
+
 // Half spaces for the sides of the box that the place is beyond. \returns whether there are any
 bool add_sides_passed(const Box3& box, const Vec3& place, std::vector<HalfSpace>& spaces) {
   constexpr double rounding = 1e-9;
@@ -295,7 +310,11 @@ std::optional<Vec3> place_clear_of_model(const Guard& guard, const Objective& ob
     spaces.push_back({-Vec3::UnitX(), -off_plane});
   }
   if (const SeamBand* band = cage.band_of(patch)) {
-    patch.position = band->nearest(patch.position);
+    const std::optional<Vec3> inside = nearest_in_band(*band, patch.position, patch.on_plane);
+    if (!inside) {
+      return std::nullopt;
+    }
+    patch.position = *inside;
     add_band(*band, Vec3::Zero(), spaces);
   }
   const Box3 room = fan.room();

@@ -169,16 +169,20 @@ std::size_t closed_strips(const PolygonMesh& mesh) {
   return closed / 2; // each was walked both ways
 }
 
-double thin_triangles(TriangleView mesh) {
+/// Fills in what the report says of the triangles' shapes.
+void report_shapes(TriangleView mesh, QuadReport& report) {
   constexpr double thin = 0.15; // 2 r / R
-  const auto count =
-      std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
-        return triangle_quality(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]) <
-               thin;
-      });
-  return mesh.triangles.empty()
-             ? 0
-             : static_cast<double>(count) / static_cast<double>(mesh.triangles.size());
+  std::size_t count = 0;
+  report.least_quality = mesh.triangles.empty() ? 0 : 1;
+  for (const Triangle& t : mesh.triangles) {
+    const double quality =
+        triangle_quality(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
+    count += quality < thin ? 1 : 0;
+    report.least_quality = std::min(report.least_quality, quality);
+  }
+  report.thin = mesh.triangles.empty()
+                    ? 0
+                    : static_cast<double>(count) / static_cast<double>(mesh.triangles.size());
 }
 
 } // namespace
@@ -201,7 +205,7 @@ QuadReport report_of(const PolygonMesh& mesh) {
   }
   const std::size_t faces = mesh.face_count();
   report.share = faces > 0 ? static_cast<double>(report.quads) / static_cast<double>(faces) : 0;
-  report.thin = thin_triangles(to_triangle_mesh(mesh));
+  report_shapes(to_triangle_mesh(mesh), report);
   report.rings = closed_strips(mesh);
   report.loops = closed_loops(mesh);
   return report;

@@ -38,6 +38,8 @@ inline constexpr double enough_quads = 0.7;
 /// The share of thin triangles (see QuadReport) that a cage may have and still count as well
 /// shaped.
 inline constexpr double few_thin = 0.05;
+/// What the least 2 r / R of its triangles must not fall below for that.
+inline constexpr double needle = 0.03;
 
 struct QuadReport {
   std::size_t quads = 0;
@@ -52,8 +54,10 @@ struct QuadReport {
   /// Closed loops of edges that go straight on at every vertex, four quads meeting there: round
   /// limbs, and round the body.
   std::size_t loops = 0;
-  /// Of the triangles that triangulate() makes, the share whose 2 r / R is below 0.15.
+  /// Of the triangles that triangulate() makes, the share whose 2 r / R is below 0.15, and the
+  /// least 2 r / R.
   double thin = 0;
+  double least_quality = 0;
 };
 
 struct Quadrangulated {

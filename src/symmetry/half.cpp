@@ -151,6 +151,19 @@ HalfModel half_model(TriangleView model, const MirrorFrame& frame) {
   return half;
 }
 
+TriangleMesh mirror_image(TriangleView model, const MirrorPlane& plane) {
+  TriangleMesh image;
+  image.positions.reserve(model.positions.size());
+  for (const Vec3& p : model.positions) {
+    image.positions.push_back(plane.mirrored(p));
+  }
+  image.triangles.reserve(model.triangles.size());
+  for (const auto& [a, b, c] : model.triangles) {
+    image.triangles.push_back({a, c, b});
+  }
+  return image;
+}
+
 TriangleMesh in_frame(TriangleView model, const MirrorFrame& frame) {
   TriangleMesh result;
   result.positions.reserve(model.positions.size());

@@ -57,6 +57,9 @@ struct HalfModel {
 
 HalfModel half_model(TriangleView model, const MirrorFrame& frame);
 
+/// The mirror image of a model: as many vertices and triangles, in the same order.
+TriangleMesh mirror_image(TriangleView model, const MirrorPlane& plane);
+
 /// The whole model in the frame.
 TriangleMesh in_frame(TriangleView model, const MirrorFrame& frame);
 

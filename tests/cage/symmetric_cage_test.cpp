@@ -4,6 +4,7 @@
 #include "mesh/shapes.h"
 #include "spatial/bvh.h"
 #include "support/figures.h"
+#include "support/pairing.h"
 #include "validate/greatest_gap.h"
 #include "validate/validate_cage.h"
 
@@ -11,12 +12,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <set>
 
 namespace cagewright {
 namespace {
 
 using test::ellipsoid;
+using test::expect_paired_exactly;
 
 // A body with a head and two arms, one of which may hang lower; and two crumbs beside it.
 TriangleMesh figure(double lower = 0) {
@@ -41,37 +42,6 @@ BudgetCageOptions options(int vertices, Symmetry symmetry) {
   result.improve.rounds = 1;
   result.symmetry = symmetry;
   return result;
-}
-
-void expect_paired_exactly(const BudgetCage& made) {
-  ASSERT_TRUE(made.mirror) << made.why_not_mirrored;
-  const MirrorPairing& mirror = *made.mirror;
-  const int axis = mirror.plane.axis();
-  ASSERT_GE(axis, 0);
-  EXPECT_EQ(mirror.error, 0);
-  std::set<std::array<Index, 3>> faces;
-  const auto key = [](Triangle t) {
-    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    return t;
-  };
-  for (const Triangle& t : made.cage.triangles) {
-    faces.insert(key(t));
-  }
-  for (Index v = 0; v < made.cage.positions.size(); ++v) {
-    Vec3 sum = made.cage.positions[v] + made.cage.positions[mirror.vertex_partners[v]];
-    EXPECT_EQ(sum[axis], 2 * mirror.plane.offset);
-    sum -= 2 * made.cage.positions[v];
-    sum[axis] = 0;
-    EXPECT_EQ(sum, Vec3(Vec3::Zero()));
-    EXPECT_EQ(mirror.vertex_partners[v] == v, made.cage.positions[v][axis] == mirror.plane.offset);
-  }
-  for (Index f = 0; f < made.cage.triangles.size(); ++f) {
-    const auto [a, b, c] = made.cage.triangles[f];
-    const std::vector<Index>& partner = mirror.vertex_partners;
-    EXPECT_TRUE(faces.contains(key({partner[a], partner[c], partner[b]})));
-    EXPECT_EQ(key(made.cage.triangles[mirror.face_partners[f]]),
-              key({partner[a], partner[c], partner[b]}));
-  }
 }
 
 TEST(SymmetricCage, IsValidWithinTheBudgetClearAndPairedExactly) {

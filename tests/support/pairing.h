@@ -1,0 +1,57 @@
+/// \file
+/// What is claimed of cages that are their own mirror images.
+#pragma once
+
+#include "cage/budget_cage.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace cagewright::test {
+
+/// The corners of a face, begun at the least.
+inline std::vector<Index> key(std::span<const Index> face) {
+  std::vector<Index> corners(face.begin(), face.end());
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+inline std::span<const Index> face_of(const BudgetCage& made, Index f) {
+  return made.polygons ? made.polygons->face(f) : std::span<const Index>(made.cage.triangles[f]);
+}
+
+/// Every vertex and every face has its partner, across one of the world's axes, without rounding.
+inline void expect_paired_exactly(const BudgetCage& made) {
+  ASSERT_TRUE(made.mirror) << made.why_not_mirrored;
+  const MirrorPairing& mirror = *made.mirror;
+  const int axis = mirror.plane.axis();
+  ASSERT_GE(axis, 0);
+  EXPECT_EQ(mirror.error, 0);
+  const std::vector<Vec3>& at = made.cage.positions;
+  ASSERT_EQ(mirror.vertex_partners.size(), at.size());
+  for (Index v = 0; v < at.size(); ++v) {
+    const Index partner = mirror.vertex_partners[v];
+    Vec3 sum = at[v] + at[partner];
+    EXPECT_EQ(sum[axis], 2 * mirror.plane.offset);
+    sum -= 2 * at[v];
+    sum[axis] = 0;
+    EXPECT_EQ(sum, Vec3(Vec3::Zero()));
+    EXPECT_EQ(partner == v, at[v][axis] == mirror.plane.offset);
+    EXPECT_EQ(mirror.vertex_partners[partner], v);
+  }
+  ASSERT_EQ(mirror.face_partners.size(),
+            made.polygons ? made.polygons->face_count() : made.cage.triangles.size());
+  for (Index f = 0; f < mirror.face_partners.size(); ++f) {
+    std::vector<Index> image;
+    for (const Index v : face_of(made, f)) {
+      image.insert(image.begin(), mirror.vertex_partners[v]);
+    }
+    EXPECT_EQ(key(image), key(face_of(made, mirror.face_partners[f])));
+    EXPECT_NE(mirror.face_partners[f], f);
+  }
+}
+
+} // namespace cagewright::test
