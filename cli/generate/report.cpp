@@ -91,7 +91,7 @@ std::string times_line(const std::vector<StageTime>& times) {
 std::string boxes_line(const BoxDecomposition& boxes, std::size_t count) {
   return fmt::format("  {} boxes by {} cuts{}\n", count, cuts_in(boxes.tree),
                      boxes.bridges > 0
-                         ? fmt::format("; {} bridges between pieces of the model", boxes.bridges)
+                         ? fmt::format("; bridges between pieces of the model: {}", boxes.bridges)
                          : "");
 }
 
@@ -238,14 +238,14 @@ std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
                         made.resolution, made.start_vertices);
   }
   if (made.bridges > 0) {
-    text += fmt::format("  {} bridges between pieces of the model\n", made.bridges);
+    text += fmt::format("  bridges between pieces of the model: {}\n", made.bridges);
   }
   if (made.pieces > 1 || made.joined > 0) {
     text += fmt::format("  {} closed pieces\n", made.pieces);
   }
   if (made.joined > 0) {
-    text += fmt::format("  {} groups of the model's pieces share a cage with others: their own "
-                        "would meet, lie within another, or be too small for the budget\n",
+    text += fmt::format("  groups of pieces that share a cage with others: {} (their own would "
+                        "meet, lie within another, or be too small for the budget)\n",
                         made.joined);
   }
   if (!made.why_not_boxes.empty()) {

@@ -110,7 +110,7 @@ private:
   /// image together; the gap that counts is the one to the model alone.
   [[nodiscard]] Result<BudgetCage> two_sides(TriangleView part, const BudgetCageOptions& options,
                                              const Progress& progress) const {
-    constexpr int attempts = 4;
+    const int attempts = options.max_gap > 0 ? 4 : 1;
     double max_gap = options.max_gap;
     Result<BudgetCage> best = Error{ErrorCode::no_valid_cage, ""};
     for (int k = 0; k < attempts; ++k) {
@@ -126,18 +126,17 @@ private:
       }
       const double gap = *made->gap;
       const bool is_near = gap <= options.max_gap;
-      made->report.reached = made->report.reached && is_near;
+      const bool has_side = made->report.reached; // within max_gap of the model and its image
+      made->report.reached = has_side && is_near;
       if (!best || gap < *best->gap) {
         best = std::move(made);
       }
-      if (is_near) {
+      const double off = gap - max_gap; // what the image costs, about
+      if (is_near || !has_side || off + options.improve.clearance >= options.max_gap) {
         break;
       }
       constexpr double less = 0.98;
-      max_gap *= less * options.max_gap / gap;
-      if (!(max_gap > options.improve.clearance)) {
-        break;
-      }
+      max_gap = std::max(1.05 * options.improve.clearance, less * (options.max_gap - off));
     }
     if (!best->report.reached && best->report.why_not.empty()) {
       best->report.why_not = "the model is farther than that from its own mirror image";

@@ -223,6 +223,7 @@ class PiecesApart(InAFolder):
             self.assertEqual(data["budget"]["joined"], 0)
             self.assertLessEqual(data["cage"]["vertices"], 60)
             self.assertIn("2 closed pieces", text)
+            self.assertIn("mirrored in the plane", text)
             described = json.loads(self.described())
             self.assertEqual(described["components"], 2)
 
