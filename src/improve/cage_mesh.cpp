@@ -294,6 +294,7 @@ std::vector<Index> CageMesh::parts_after(const Patch& patch) const {
 }
 
 std::vector<Index> CageMesh::apply(const Patch& patch) {
+  assert(patch.vertex == no_index || !patch.on_plane || patch.position.x() == 0);
   const std::vector<Index> parts = parts_after(patch);
   for (const Index f : patch.removed) {
     detach(f);

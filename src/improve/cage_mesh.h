@@ -9,6 +9,7 @@
 #include "mesh/triangle_mesh.h"
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -117,11 +118,15 @@ public:
   /// A new vertex on the edge a b, which is on the plane if the edge is.
   [[nodiscard]] Patch split(Index a, Index b) const;
 
-  /// Makes the change. \returns the new faces' numbers, in the order of `added`.
+  /// Makes the change; a vertex on the plane must stay there. \returns the new faces' numbers, in
+  /// the order of `added`.
   std::vector<Index> apply(const Patch& patch);
 
-  /// Moves a vertex and nothing else.
-  void set_position(Index v, const Vec3& p) { positions_[v] = p; }
+  /// Moves a vertex and nothing else. One on the plane stays there.
+  void set_position(Index v, const Vec3& p) {
+    assert(!on_plane(v) || p.x() == 0);
+    positions_[v] = p;
+  }
 
   /// The living, renumbered in order.
   [[nodiscard]] TriangleMesh compact() const;

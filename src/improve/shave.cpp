@@ -124,7 +124,7 @@ private:
     for (const std::optional<Vec3>& place :
          {place_clear_of_model(guard_, objective_, cage_.mesh, *patch),
           std::optional<Vec3>(cage_.mesh.position(end))}) {
-      if (!place) {
+      if (!place || (patch->on_plane && place->x() != 0)) {
         continue;
       }
       patch->position = *place;
