@@ -2,11 +2,14 @@
 
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include "symmetry/half.h"
 #include "validate/validate_cage.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
+#include <optional>
 
 namespace cagewright {
 namespace {
@@ -22,7 +25,7 @@ TriangleMesh scaled(TriangleMesh mesh, double factor) {
 
 /// A ball with a mushroom on its first face, three vertices to a ring, of which the last three are
 /// the top.
-TriangleMesh ball_with_a_knob(double radius) {
+TriangleMesh ball_with_a_knob(double radius, double cap = 0.9) {
   TriangleMesh mesh = scaled(make_icosphere(1), radius);
   std::array<Index, 3> below = mesh.triangles.front();
   mesh.triangles.erase(mesh.triangles.begin());
@@ -30,7 +33,7 @@ TriangleMesh ball_with_a_knob(double radius) {
   std::transform(below.begin(), below.end(), base.begin(),
                  [&](Index v) { return mesh.positions[v]; });
   const Vec3 center = (base[0] + base[1] + base[2]) / 3;
-  for (const auto& [height, width] : {std::pair(0.2, 0.5), std::pair(0.5, 0.9)}) {
+  for (const auto& [height, width] : {std::pair(0.2, 0.5), std::pair(0.5, cap)}) {
     std::array<Index, 3> ring{};
     for (std::size_t k = 0; k < 3; ++k) {
       ring[k] = static_cast<Index>(mesh.positions.size());
@@ -48,9 +51,9 @@ TriangleMesh ball_with_a_knob(double radius) {
 }
 
 struct Shaving {
-  explicit Shaving(TriangleMesh start, TriangleMesh inside)
+  explicit Shaving(TriangleMesh start, TriangleMesh inside, CageExtent extent = CageExtent::whole)
       : model(std::move(inside)), surface(model), guard(surface, 0.005 * surface.diagonal),
-        objective(surface, weights()), cage(start) {}
+        objective(surface, weights()), cage(start, extent) {}
 
   static ObjectiveWeights weights() {
     ObjectiveWeights result;
@@ -88,6 +91,36 @@ TEST(ShaveTip, TakesAKnobOff) {
     EXPECT_LE(s.cage.mesh.valence(v), most_valence);
   }
   EXPECT_TRUE(validate_cage(s.cage.mesh.compact(), s.model)->valid());
+}
+
+// Tips in the mirror plane are drawn in within it, though there are ends beside it.
+TEST(ShaveTip, KeepsTheBorderOfAHalfInItsPlane) {
+  TriangleMesh ball = ball_with_a_knob(1.2, 6); // what is under the cap finds no place
+  const Triangle top = ball.triangles.back();
+  const Vec3 up = ball.positions[top[0]] + ball.positions[top[1]] + ball.positions[top[2]];
+  std::size_t shaved = 0;
+  for (int degrees = 0; degrees < 120; degrees += 10) {
+    TriangleMesh turned = ball;
+    const Mat3 turn = (Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vec3::UnitZ()) *
+                       Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitZ()))
+                          .toRotationMatrix();
+    for (Vec3& p : turned.positions) {
+      p = turn * p;
+    }
+    const std::optional<TriangleMesh> half = cut_half(turned);
+    ASSERT_TRUE(half);
+    for (Index v = 0; v < half->positions.size(); ++v) {
+      if (half->positions[v].x() != 0 || half->positions[v].z() < 1.5) {
+        continue;
+      }
+      Shaving s(*half, make_icosphere(2), CageExtent::half);
+      shaved += shave_tip(s.cage, s.guard, s.objective, v, most_valence) ? 1 : 0;
+      for (Index w = 0; w < s.cage.mesh.vertex_end(); ++w) {
+        EXPECT_TRUE(!s.cage.mesh.on_plane(w) || s.cage.mesh.position(w).x() == 0);
+      }
+    }
+  }
+  EXPECT_GT(shaved, 0U);
 }
 
 TEST(ShaveTip, LeavesACornerThatIsNoFartherThanItMustBe) {
