@@ -25,6 +25,24 @@ SideMap sides_of(const PolygonMesh& mesh) {
   return sides;
 }
 
+/// How many closed walks of sides there are, each one way or the other. `next` is the same side
+/// where a walk ends.
+template <class Next> std::size_t closed_walks(const SideMap& sides, const Next& next) {
+  std::set<Side> seen;
+  std::size_t closed = 0;
+  for (const auto& [start, place] : sides) {
+    if (seen.contains(start)) {
+      continue;
+    }
+    Side side = start;
+    while (seen.insert(side).second) {
+      side = next(side);
+    }
+    closed += side == start && next(start) != start ? 1 : 0;
+  }
+  return closed / 2; // each was walked both ways
+}
+
 /// Follows quads across opposite sides, from the one to the left of `start`.
 /// \returns false if that ends at another face, or comes to a quad again
 bool follow(const PolygonMesh& mesh, const SideMap& sides, const Side& start, QuadStrip& strip) {
@@ -220,6 +238,21 @@ std::optional<PolygonMesh> collapse_strip(const PolygonMesh& mesh, const QuadStr
   return result;
 }
 
+std::size_t closed_strips(const PolygonMesh& mesh) {
+  const SideMap sides = sides_of(mesh);
+  // The side across the quad to the left, the other way round; the same if there is no quad.
+  const auto across = [&](const Side& side) {
+    const auto at = sides.find(side);
+    if (at == sides.end() || mesh.face(at->second[0]).size() != 4) {
+      return side;
+    }
+    const std::span<const Index> face = mesh.face(at->second[0]);
+    const Index i = at->second[1];
+    return Side{face[(i + 3) % 4], face[(i + 2) % 4]};
+  };
+  return closed_walks(sides, across);
+}
+
 std::size_t closed_loops(const PolygonMesh& mesh) {
   const SideMap sides = sides_of(mesh);
   std::vector<int> quads(mesh.positions.size(), 0);
@@ -248,19 +281,7 @@ std::size_t closed_loops(const PolygonMesh& mesh) {
     }
     return to;
   };
-  std::set<Side> seen;
-  std::size_t closed = 0;
-  for (const auto& [start, place] : sides) {
-    if (seen.contains(start)) {
-      continue;
-    }
-    Side side = start;
-    while (seen.insert(side).second) {
-      side = straight_on(side);
-    }
-    closed += side == start && straight_on(start) != start ? 1 : 0;
-  }
-  return closed / 2; // each was walked both ways
+  return closed_walks(sides, straight_on);
 }
 
 } // namespace cagewright

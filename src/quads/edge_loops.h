@@ -31,6 +31,9 @@ std::optional<PolygonMesh> collapse_strip(const PolygonMesh& mesh, const QuadStr
                                           const std::vector<Vec3>& places,
                                           std::vector<Index>& drawn);
 
+/// Closed strips of quads, those that cross a quad twice among them.
+std::size_t closed_strips(const PolygonMesh& mesh);
+
 /// Closed loops of edges that go straight on at every vertex: four quads meet there.
 std::size_t closed_loops(const PolygonMesh& mesh);
 

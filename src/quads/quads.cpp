@@ -11,7 +11,6 @@
 #include "quads/settle_shapes.h"
 
 #include <algorithm>
-#include <map>
 
 namespace cagewright {
 namespace {
@@ -128,45 +127,6 @@ void turn_quads(QuadCage& cage) {
     }
   }
   cage.replace(removed, added);
-}
-
-/// Across quads from side to opposite side, until a side comes again or a face is no quad.
-std::size_t closed_strips(const PolygonMesh& mesh) {
-  using Side = std::array<Index, 2>;
-  std::map<Side, std::array<Index, 2>> left_of; // face, its corner that the side begins at
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    const std::span<const Index> face = mesh.face(f);
-    for (Index i = 0; i < face.size(); ++i) {
-      left_of[{face[i], face[(i + 1) % face.size()]}] = {f, i};
-    }
-  }
-  std::size_t closed = 0;
-  std::map<Side, bool> seen;
-  for (const auto& [start, place] : left_of) {
-    if (seen[start]) {
-      continue;
-    }
-    Side side = start;
-    for (;;) {
-      seen[side] = true;
-      const auto at = left_of.find(side);
-      if (at == left_of.end() || mesh.face(at->second[0]).size() != 4) {
-        break;
-      }
-      const std::span<const Index> face = mesh.face(at->second[0]);
-      const Index i = at->second[1];
-      const Side opposite{face[(i + 2) % 4], face[(i + 3) % 4]};
-      side = {opposite[1], opposite[0]};
-      if (side == start) {
-        ++closed;
-        break;
-      }
-      if (seen[side]) {
-        break;
-      }
-    }
-  }
-  return closed / 2; // each was walked both ways
 }
 
 /// Fills in what the report says of the triangles' shapes.

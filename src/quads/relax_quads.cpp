@@ -204,6 +204,7 @@ private:
   // The positions after one quadratic program: of the objective, or only of the constraints.
   [[nodiscard]] Positions moved(const Positions& at, double reach, bool towards_goal) const {
     std::vector<Piece> pieces(faces_.size());
+    const KeepClear clear{guard_.model().tree, keep_, guard_.clearance(), reach, reach / 2};
     parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
       Piece& piece = pieces[i];
       const CageFace& face = cage_.face(faces_[i]);
@@ -213,14 +214,15 @@ private:
         const Triangle& part = parts.triangles[k];
         const Corners t = corners(at, part);
         if ((t[1] - t[0]).cross(t[2] - t[0]).dot(normal) > 0) {
-          add_constraints(part, t, reach, piece.constraints);
+          clear.add_triangle({number_[part[0]], number_[part[1]], number_[part[2]]}, t, cells,
+                             piece.constraints);
         }
         if (towards_goal) {
           constexpr std::array<int, 4> first = {0, 2, 1, 3};
           add_part(t, first[k], face, piece);
         }
       }
-      add_side_constraints(at, faces_[i], reach, piece.constraints);
+      add_side_constraints(at, faces_[i], clear, piece.constraints);
       if (face.is_quad()) {
         add_limits(at, face, reach, piece.constraints);
       }
@@ -370,31 +372,6 @@ private:
     }
   }
 
-  // Half spaces that keep the part clear of the model for small moves: one for the highest point
-  // of the model below each small triangle of it, and one for the nearest of all.
-  void add_constraints(const Triangle& part, const Corners& t, double reach,
-                       std::vector<BlockConstraint>& constraints) const {
-    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
-    const double length = normal.norm();
-    if (!(length > 0)) {
-      return;
-    }
-    const Vec3 n = normal / length;
-    const Triangle vertices{number_[part[0]], number_[part[1]], number_[part[2]]};
-    const SurfaceTree& tree = guard_.model().tree;
-    for (const SurfaceTree::Relief& r : tree.relief(t, cells, -(keep_ + reach), reach)) {
-      constraints.push_back({vertices,
-                             {1 - r.at_b - r.at_c, r.at_b, r.at_c},
-                             n,
-                             std::min(r.height + keep_, reach / 2)});
-    }
-    if (const auto pair = tree.nearest_to(t, guard_.clearance())) {
-      const double distance = pair->distance;
-      const Vec3 u = distance > 0.01 * keep_ ? Vec3((pair->on_a - pair->on_b) / distance) : n;
-      constraints.push_back({vertices, barycentric(pair->on_a, t), u, keep_ - distance});
-    }
-  }
-
   // Half spaces that keep a quad within the limits, or bring it nearer to them.
   void add_limits(const Positions& at, const CageFace& face, double reach,
                   std::vector<BlockConstraint>& constraints) const {
@@ -466,21 +443,14 @@ private:
     }
   }
 
-  // The same for the corners, the sides and the diagonals of a face. What is on a side is looked at
-  // by one of its two faces, for both.
-  void add_side_constraints(const Positions& at, Index f, double reach,
+  // Half spaces that keep the corners, the sides and the diagonals of a face clear of the model.
+  // What is on a side is looked at by one of its two faces, for both.
+  void add_side_constraints(const Positions& at, Index f, const KeepClear& clear,
                             std::vector<BlockConstraint>& constraints) const {
     const CageFace& face = cage_.face(f);
     const auto add = [&](Index a, Index b, double share) {
-      const Vec3 p = (1 - share) * at[a] + share * at[b];
-      const SurfaceTree::Nearest near = guard_.model().tree.nearest(p, keep_ + reach);
-      if (near.distance > 0.01 * keep_ && std::isfinite(near.distance)) {
-        const Vec3 u = (p - near.point) / near.distance;
-        constraints.push_back({{number_[a], number_[b], number_[b]},
-                               {1 - share, share, 0},
-                               u,
-                               std::min(keep_ - near.distance, reach / 2)});
-      }
+      clear.add_point({number_[a], number_[b], number_[b]}, {1 - share, share, 0},
+                      (1 - share) * at[a] + share * at[b], constraints);
     };
     const auto add_inside = [&](Index a, Index b) {
       for (int i = 1; i < cells; ++i) {
@@ -500,14 +470,6 @@ private:
       add_inside(face[0], face[2]);
       add_inside(face[1], face[3]);
     }
-  }
-
-  static std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
-    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-    const double squared = n.squaredNorm();
-    const double a = (t[2] - t[1]).cross(p - t[1]).dot(n) / squared;
-    const double b = (t[0] - t[2]).cross(p - t[2]).dot(n) / squared;
-    return {a, b, 1 - a - b};
   }
 
   // As much of the way from the present positions to the goal as leaves the cage valid: vertices of
