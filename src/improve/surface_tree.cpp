@@ -311,6 +311,19 @@ void SurfaceTree::to_frame(const Vec3& p, float (&result)[3]) const {
   }
 }
 
+// Round fine models much time goes with waiting for memory: it is asked for what comes after the
+// next.
+inline void SurfaceTree::prefetch(Index child) const {
+  const bool is_leaf = (child & leaf_bit) != 0;
+  const void* begin = is_leaf ? static_cast<const void*>(triangles_.data() + (child & ~leaf_bit))
+                              : static_cast<const void*>(nodes_.data() + child);
+  const std::size_t size = is_leaf ? sizeof(Corners) : sizeof(SurfaceNode);
+  constexpr std::size_t line = 64;
+  for (std::size_t at = 0; at < size; at += line) {
+    __builtin_prefetch(static_cast<const char*>(begin) + at);
+  }
+}
+
 SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double error) const {
   Nearest best;
   double bound = within * within;
@@ -350,6 +363,11 @@ SurfaceTree::Nearest SurfaceTree::nearest(const Vec3& p, double within, double e
     if ((child & leaf_bit) == 0) {
       Level& below = path[++level];
       below.node = &nodes_[child];
+      if ((below.node->child[0] & leaf_bit) != 0) {
+        for (const Index triangle : below.node->child) {
+          prefetch(triangle);
+        }
+      }
       next = nearest_child(*below.node, q, most, below.squared);
       continue;
     }
@@ -410,6 +428,7 @@ void SurfaceTree::visit_near(const Corners& triangle, double within, Visit visit
     for (std::uint32_t set = children_within(node, query, reach); set != 0;) {
       const int i = std::bit_width(set) - 1;
       stack[top++] = node.child[i];
+      prefetch(node.child[i]);
       set ^= std::uint32_t{1} << i;
     }
   }
@@ -512,6 +531,7 @@ std::optional<SurfaceTree::Highest> SurfaceTree::highest(const HalfSpace& plane,
         stack[at] = stack[at - 1];
       }
       stack[at] = {height[i], node.child[i]};
+      prefetch(node.child[i]);
     }
   }
   return best;
@@ -665,6 +685,7 @@ std::vector<SurfaceTree::Relief> SurfaceTree::relief(const Corners& triangle, in
         stack[at] = stack[at - 1];
       }
       stack[at] = {r.height[i], r.low_b[i], r.high_b[i], r.low_c[i], r.high_c[i], node.child[i]};
+      prefetch(node.child[i]);
     }
   }
   std::vector<Relief> result;

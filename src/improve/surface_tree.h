@@ -98,6 +98,7 @@ private:
   [[nodiscard]] float length_in_frame(double length) const {
     return static_cast<float>(length * scale_);
   }
+  void prefetch(Index child) const; ///< of a node, or of a triangle
   template <class Visit> void visit_near(const Corners& triangle, double within, Visit visit) const;
 
   Vec3 origin_ = Vec3::Zero();
