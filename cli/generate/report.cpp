@@ -108,7 +108,7 @@ nlohmann::json to_json(const QuadReport& quads) {
 
 std::string quads_line(const QuadReport& quads) {
   return fmt::format("  {} quads and {} triangles: {:.0f} % quads, bent by up to {:.0f} degrees; "
-                     "{} closed strips of quads, {} closed loops of edges\n",
+                     "closed strips of quads: {}, closed loops of edges: {}\n",
                      quads.quads, quads.triangles, 100 * quads.share, quads.max_bend_degrees,
                      quads.rings, quads.loops);
 }
@@ -254,7 +254,7 @@ std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
   text += symmetry_line(made);
   text += made.quads ? quads_line(*made.quads) : std::string();
   if (!made.limb_rings.empty()) {
-    text += fmt::format("  {} rings of edges round limbs\n", made.limb_rings.size());
+    text += fmt::format("  rings of edges round limbs: {}\n", made.limb_rings.size());
   }
   if (made.clearance < made.clearance_asked) {
     text += fmt::format("  the boxes came nearer than the clearance asked for: {:.4f} % of the "
