@@ -69,9 +69,17 @@ protected:
     window->resize(1280, 800);
     window->show();
     ASSERT_TRUE(QTest::qWaitForWindowExposed(window.get()));
-    window->activateWindow();
+    activate();
     view().setFocus();
     settle();
+  }
+
+  /// Shortcuts are those of the active window, and the last one that was may still be going.
+  void activate() {
+    ASSERT_TRUE(wait_until([this] {
+      window->activateWindow();
+      return window->isActiveWindow();
+    }));
   }
 
   QString path(const char* name) const { return folder.filePath(name); }
@@ -128,6 +136,7 @@ protected:
       QTest::mouseClick(dialog->findChild<QDialogButtonBox*>()->buttons().first(), Qt::LeftButton);
     });
     timer.start(30);
+    activate();
     act();
     EXPECT_TRUE(typed) << "no file was asked for";
   }
