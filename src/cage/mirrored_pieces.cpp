@@ -2,6 +2,7 @@
 
 #include "cage/part_options.h"
 #include "cage/quad_stage.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "mesh/triangulate.h"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -34,18 +34,13 @@ Result<MirroredGroups> mirrored_groups(TriangleView model, const MirrorPlane& pl
     return groups.error();
   }
   const std::size_t count = model.positions.size();
-  std::vector<std::size_t> into(groups->count);
-  std::iota(into.begin(), into.end(), 0);
-  const auto root = [&](std::size_t g) {
-    while (into[g] != g) {
-      g = into[g];
-    }
-    return g;
-  };
+  DisjointSets sets(groups->count);
   for (std::size_t v = 0; v < count; ++v) {
-    const std::size_t a = root(groups->group_of[v]);
-    const std::size_t b = root(groups->group_of[v + count]);
-    into[std::max(a, b)] = std::min(a, b);
+    sets.join(groups->group_of[v], groups->group_of[v + count]);
+  }
+  std::vector<std::size_t> into;
+  for (Index g = 0; g < groups->count; ++g) {
+    into.push_back(sets.find(g));
   }
   MirroredGroups result{joined_groups(*groups, into), groups->count};
   result.groups.group_of.resize(count); // those of the image are the same ones

@@ -113,7 +113,7 @@ private:
   }
 
   /// At the best place, or at the end of the edge: under a fin there is some of the model above the
-  /// fin's lower side, and no place is found.
+  /// fin's lower side, and no place is found. A tip on a half's plane must stay in it.
   [[nodiscard]] std::optional<Candidate> collapse_to(Index end,
                                                      const std::vector<double>& values) const {
     std::optional<Patch> patch = cage_.mesh.collapse(tip_, end);
