@@ -45,9 +45,10 @@ TEST(QuadCageWithinABudget, IsPairedExactlyWhenMirrored) {
 TEST(QuadCageWithinABudget, IsMirroredThoughARingLiesNearThePlane) {
   const TriangleMesh model =
       joined(ellipsoid({1, 0, 0}, {0.4, 0.4, 0.4}), ellipsoid({-1, 0, 0}, {0.4, 0.4, 0.4}));
-  for (const int vertices : {40, 60}) {
-    BudgetCageOptions options = quads_of(vertices);
-    options.improve.rounds = 1;
+  for (const int vertices : {50, 60}) {
+    BudgetCageOptions options;
+    options.quads = true;
+    options.improve.vertices = vertices;
     options.symmetry = Symmetry::automatic;
     const Result<BudgetCage> made = make_budget_cage(model, options);
     ASSERT_TRUE(made && made->polygons);
