@@ -3,7 +3,7 @@
 #include "app/document/binding.h"
 #include "app/document/time_line.h"
 #include "app/jobs/work.h"
-#include "io/write_mesh.h"
+#include <cagewright/io/write_mesh.h>
 
 #include <QFileInfo>
 #include <QRegularExpression>

@@ -1,8 +1,8 @@
 #include "binding.h"
 
-#include "io/read_mesh.h"
-#include "mesh/triangulate.h"
-#include "validate/validate_cage.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 
 #include "session.h"
 
-#include "coordinates/mean_value.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <cstddef>
 #include <string>

@@ -2,7 +2,7 @@
 /// The figures of a cage, for people and for programs.
 #pragma once
 
-#include "validate/cage_metrics.h"
+#include <cagewright/validate/cage_metrics.h>
 
 #include <nlohmann/json.hpp>
 

@@ -2,8 +2,8 @@
 /// Geometry as JSON, the same in every command.
 #pragma once
 
-#include "core/geometry.h"
 #include "obb/oriented_box.h"
+#include <cagewright/core/geometry.h>
 
 #include <nlohmann/json.hpp>
 

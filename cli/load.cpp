@@ -1,8 +1,8 @@
 #include "load.h"
 
-#include "io/mesh_format.h"
-#include "io/read_mesh.h"
-#include "mesh/triangulate.h"
+#include <cagewright/io/mesh_format.h>
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <unistd.h>
 

@@ -2,8 +2,8 @@
 /// Models from the command line's paths.
 #pragma once
 
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <string>
 

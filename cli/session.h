@@ -2,8 +2,8 @@
 /// What every command shares: where to talk, how to stop, which exit code says what.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
 
 #include <CLI/CLI.hpp>
 

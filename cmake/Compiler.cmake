@@ -14,6 +14,7 @@ endif()
 
 add_library(cagewright_compiler INTERFACE)
 target_compile_features(cagewright_compiler INTERFACE cxx_std_20)
+target_include_directories(cagewright_compiler INTERFACE ${PROJECT_SOURCE_DIR}/src) # headers that are not installed
 target_compile_options(cagewright_compiler INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
   -ffp-contract=off  # the same bits on every compiler

@@ -1,9 +1,9 @@
 # cagewright_add_module(NAME mesh HEADERS ... SOURCES ... USES core ... [LINKS Eigen3::Eigen] [PRIVATE_LINKS ...])
 #
-# One folder, one target: cagewright::NAME, built from src/NAME. HEADERS is the
-# public surface, installed as <NAME/header.h>; each header is also compiled on its own
-# by the target all_verify_interface_header_sets. LINKS are libraries that the headers need,
-# PRIVATE_LINKS those that only the sources need.
+# One folder, one target: cagewright::NAME, built from src/NAME. HEADERS is the public surface, in
+# include/cagewright/NAME, included and installed as <cagewright/NAME/header.h>; the headers in
+# src/NAME are for this repository alone and included as "NAME/header.h". LINKS are libraries that
+# the public headers need, PRIVATE_LINKS those that only the sources need.
 function(cagewright_add_module)
   cmake_parse_arguments(PARSE_ARGV 0 M "" "NAME" "HEADERS;SOURCES;USES;LINKS;PRIVATE_LINKS")
   set(kind STATIC)
@@ -14,8 +14,11 @@ function(cagewright_add_module)
   endif()
   add_library(cagewright_${M_NAME} ${kind} ${M_SOURCES})
   add_library(cagewright::${M_NAME} ALIAS cagewright_${M_NAME})
+  list(TRANSFORM M_HEADERS PREPEND ${PROJECT_SOURCE_DIR}/include/cagewright/${M_NAME}/)
   target_sources(cagewright_${M_NAME} ${scope}
-    FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${M_HEADERS})
+    FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${M_HEADERS})
+  target_include_directories(cagewright_${M_NAME} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   set_target_properties(cagewright_${M_NAME} PROPERTIES
     VERIFY_INTERFACE_HEADER_SETS ON EXPORT_NAME ${M_NAME} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(cagewright_${M_NAME} ${scope} cxx_std_20)
@@ -26,7 +29,7 @@ function(cagewright_add_module)
   endif()
   install(TARGETS cagewright_${M_NAME} EXPORT cagewright
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cagewright)
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
 # cagewright_add_tests(mesh FILES topology_test.cpp ... USES mesh ...): one program per folder of

@@ -3,9 +3,9 @@
 //   make_cage MODEL CAGE.obj
 
 #include "cage/generate.h"
-#include "io/read_mesh.h"
-#include "io/write_mesh.h"
-#include "mesh/triangulate.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/write_mesh.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <iostream>
 

@@ -2,7 +2,7 @@
 /// A model bound to a cage, as the document keeps it.
 #pragma once
 
-#include "deform/deformer.h"
+#include <cagewright/deform/deformer.h>
 
 #include <utility>
 

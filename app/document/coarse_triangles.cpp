@@ -1,6 +1,6 @@
 #include "app/document/coarse_triangles.h"
 
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 /// A large model with few triangles, for pictures that move.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cstddef>
 #include <vector>

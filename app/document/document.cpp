@@ -1,7 +1,7 @@
 #include "app/document/document.h"
 
 #include "app/document/time_line.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <utility>

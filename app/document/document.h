@@ -7,8 +7,8 @@
 #include "app/document/state.h"
 #include "app/edit/selection.h"
 #include "app/edit/tool_settings.h"
-#include "validate/cage_metrics.h"
-#include "validate/validate_cage.h"
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <QObject>
 #include <QString>

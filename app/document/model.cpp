@@ -1,11 +1,11 @@
 #include "app/document/model.h"
 
 #include "app/document/coarse_triangles.h"
-#include "deform/normals.h"
-#include "deform/weights_file.h"
-#include "io/read_mesh.h"
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
+#include <cagewright/deform/normals.h>
+#include <cagewright/deform/weights_file.h>
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <utility>
 

@@ -2,11 +2,11 @@
 /// A model as it was opened: never changed, shared by the document and the jobs.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
-#include "io/rewrite_positions.h"
-#include "mesh/polygon_mesh.h"
 #include "spatial/bvh.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/io/rewrite_positions.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <cstdint>
 #include <filesystem>

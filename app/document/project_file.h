@@ -6,7 +6,7 @@
 #include "app/document/layers.h"
 #include "app/document/state.h"
 #include "app/edit/tool_settings.h"
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <QJsonObject>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "app/edit/selection.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <vector>
 

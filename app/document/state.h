@@ -4,8 +4,8 @@
 
 #include "app/edit/selection.h"
 #include "cage/decompose.h"
-#include "core/geometry.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <QString>
 

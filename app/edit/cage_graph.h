@@ -2,8 +2,8 @@
 /// What is next to what in a cage.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
 #include "mesh/topology.h"
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <optional>
 #include <span>

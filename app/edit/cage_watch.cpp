@@ -3,9 +3,9 @@
 #include "core/parallel.h"
 #include "exact/predicates.h"
 #include "mesh/disjoint_sets.h"
-#include "mesh/measures.h"
 #include "mesh/topology.h"
 #include "validate/containment.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,10 +2,10 @@
 /// Whether a cage is still valid, at once, while its vertices are dragged.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
 #include "spatial/bvh.h"
 #include "validate/cage_parts.h"
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <memory>
 #include <span>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "app/edit/selection.h"
-#include "core/result.h"
-#include "mesh/polygon_mesh.h"
 #include "mesh/topology.h"
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <span>
 #include <vector>

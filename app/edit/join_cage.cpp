@@ -3,7 +3,7 @@
 
 #include "app/edit/cage_graph.h"
 #include "app/edit/select.h"
-#include "mesh/triangulate.h"
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 /// The camera of the viewport: it goes round a target, and maps between pixels and space.
 #pragma once
 
-#include "core/geometry.h"
-#include "render/camera.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/render/camera.h>
 
 #include <optional>
 

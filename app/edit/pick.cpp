@@ -1,7 +1,7 @@
 #include "app/edit/pick.h"
 
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include "app/edit/cage_graph.h"
 #include "app/edit/orbit_camera.h"
 #include "app/edit/selection.h"
-#include "mesh/polygon_mesh.h"
 #include "spatial/bvh.h"
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <optional>
 #include <span>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "mesh/topology.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "app/edit/transform.h"
 
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "app/edit/cage_graph.h"
 #include "app/edit/tool_settings.h"
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 #include <optional>
 #include <span>

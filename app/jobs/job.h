@@ -2,8 +2,8 @@
 /// The one place where the application leaves the GUI thread.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
 
 #include <QElapsedTimer>
 #include <QObject>

@@ -2,15 +2,15 @@
 
 #include "app/document/binding.h"
 #include "cage/density.h"
-#include "deform/normals.h"
-#include "deform/stream.h"
-#include "deform/weights_file.h"
-#include "io/read_mesh.h"
-#include "io/read_vertex_weights.h"
-#include "io/rewrite_positions.h"
-#include "io/write_mesh.h"
-#include "mesh/triangulate.h"
-#include "mesh/weld.h"
+#include <cagewright/deform/normals.h>
+#include <cagewright/deform/stream.h>
+#include <cagewright/deform/weights_file.h>
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/read_vertex_weights.h>
+#include <cagewright/io/rewrite_positions.h>
+#include <cagewright/io/write_mesh.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/mesh/weld.h>
 
 #include <QStringList>
 

@@ -5,10 +5,10 @@
 #include "app/document/generate_settings.h"
 #include "app/document/model.h"
 #include "app/document/state.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "validate/cage_metrics.h"
-#include "validate/validate_cage.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <QString>
 
@@ -21,7 +21,7 @@ namespace cagewright::app {
 struct MadeCage {
   std::shared_ptr<const PolygonMesh> cage;
   std::shared_ptr<const BoxDecomposition> stages; ///< how the model was split; null for an envelope
-  QString remark;                                 ///< what is not as asked for, and shares of quads; or empty
+  QString remark; ///< what is not as asked for, and shares of quads; or empty
 };
 
 /// Makes a cage as the settings say. Errors: those of make_budget_cage(), generate_cage(),

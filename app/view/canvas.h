@@ -3,10 +3,10 @@
 /// nor the document. Needs a current context in every function, and where it is destroyed.
 #pragma once
 
-#include "core/geometry.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
-#include "render/palette.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
+#include <cagewright/render/palette.h>
 
 #include <array>
 #include <cstdint>

@@ -3,9 +3,9 @@
 /// Private to this folder.
 #pragma once
 
-#include "core/geometry.h"
 #include "render/gl.h"
-#include "render/palette.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/render/palette.h>
 
 #include <cstddef>
 #include <span>

@@ -1,6 +1,6 @@
 #include "app/view/scene_marks.h"
 
-#include "mesh/triangulate.h"
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <array>

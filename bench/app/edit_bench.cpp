@@ -3,8 +3,8 @@
 #include "app/edit/cage_watch.h"
 #include "app/edit/pick.h"
 #include "app/edit/transform.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <benchmark/benchmark.h>
 
@@ -21,7 +21,8 @@ TriangleMesh scaled(TriangleMesh mesh, double factor) {
   return mesh;
 }
 
-/// A cage of 320 triangles close round a ball of `triangles`; `moved` of its vertices go to and fro.
+/// A cage of 320 triangles close round a ball of `triangles`; `moved` of its vertices go to and
+/// fro.
 void BM_watch_cage_320(benchmark::State& state) {
   const int subdivisions = static_cast<int>(state.range(0));
   const auto moved = static_cast<Index>(state.range(1));

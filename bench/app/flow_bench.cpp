@@ -6,8 +6,8 @@
 //     xvfb-run -a -s "-screen 0 1920x1200x24" bench/app_flow_bench
 #include "app/main_window.h"
 #include "app/view/viewport.h"
-#include "io/write_mesh.h"
 #include "mesh/shapes.h"
+#include <cagewright/io/write_mesh.h>
 
 #include <QApplication>
 #include <QElapsedTimer>

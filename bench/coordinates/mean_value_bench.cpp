@@ -3,9 +3,9 @@
 
 #include "published_formula.h"
 
-#include "coordinates/mean_value.h"
 #include "core/random.h"
 #include "mesh/shapes.h"
+#include <cagewright/coordinates/mean_value.h>
 
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>

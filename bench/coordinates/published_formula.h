@@ -2,7 +2,7 @@
 /// The yardstick: mean value coordinates as published, one point and one triangle at a time.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <algorithm>
 #include <array>

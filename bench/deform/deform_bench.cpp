@@ -1,11 +1,11 @@
 // Moving a bound model: how near to the memory's own speed, and what k of M cage vertices cost.
 
-#include "coordinates/compact_weights.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "deform/apply.h"
-#include "deform/deformer.h"
 #include "mesh/shapes.h"
+#include <cagewright/coordinates/compact_weights.h>
+#include <cagewright/deform/deformer.h>
 
 #include <benchmark/benchmark.h>
 #include <hwy/cache_control.h>

@@ -1,8 +1,8 @@
 #include "envelope/envelope.h"
 #include "improve/improve.h"
 #include "mesh/shapes.h"
-#include "validate/cage_metrics.h"
-#include "validate/validate_cage.h"
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <benchmark/benchmark.h>
 

@@ -1,6 +1,6 @@
 // How fast files become meshes and meshes files, without the disk: from memory, to memory.
-#include "io/read_mesh.h"
-#include "io/write_mesh.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/write_mesh.h>
 
 #include "mesh/shapes.h"
 

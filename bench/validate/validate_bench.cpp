@@ -1,6 +1,6 @@
 #include "mesh/shapes.h"
-#include "validate/cage_metrics.h"
-#include "validate/validate_cage.h"
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <benchmark/benchmark.h>
 

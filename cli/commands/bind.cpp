@@ -1,7 +1,7 @@
 #include "binding.h"
 #include "session.h"
 
-#include "deform/weights_file.h"
+#include <cagewright/deform/weights_file.h>
 
 #include <fmt/format.h>
 

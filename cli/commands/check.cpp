@@ -2,10 +2,10 @@
 #include "session.h"
 
 #include "io/atomic_file.h"
-#include "io/read_mesh.h"
-#include "mesh/triangulate.h"
-#include "validate/cage_metrics.h"
-#include "validate/validate_cage.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

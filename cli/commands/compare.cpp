@@ -2,12 +2,12 @@
 #include "load.h"
 #include "session.h"
 
-#include "deform/standard_poses.h"
 #include "io/atomic_file.h"
-#include "io/read_mesh.h"
-#include "validate/cage_metrics.h"
-#include "validate/model_volume.h"
-#include "validate/validate_cage.h"
+#include <cagewright/deform/standard_poses.h>
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/model_volume.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

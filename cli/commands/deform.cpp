@@ -2,14 +2,14 @@
 #include "session.h"
 
 #include "deform/apply.h"
-#include "deform/normals.h"
-#include "deform/stream.h"
-#include "deform/weights_file.h"
 #include "io/linked_files.h"
-#include "io/mesh_format.h"
-#include "io/read_mesh.h"
-#include "io/rewrite_positions.h"
-#include "mesh/measures.h"
+#include <cagewright/deform/normals.h>
+#include <cagewright/deform/stream.h>
+#include <cagewright/deform/weights_file.h>
+#include <cagewright/io/mesh_format.h>
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/rewrite_positions.h>
+#include <cagewright/mesh/measures.h>
 
 #include <fmt/format.h>
 #include <glob.h>

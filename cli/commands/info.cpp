@@ -4,18 +4,18 @@
 
 #include "exact/predicates.h"
 #include "io/atomic_file.h"
-#include "io/read_mesh.h"
-#include "mesh/measures.h"
 #include "mesh/topology.h"
-#include "mesh/triangulate.h"
-#include "mesh/weld.h"
 #include "obb/minimum_box.h"
 #include "obb/principal_axes.h"
 #include "symmetry/mirror_plane.h"
-#include "validate/model_volume.h"
 #include "validate/self_crossings.h"
 #include "voxel/point_set.h"
 #include "voxel/voxelize.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/mesh/weld.h>
+#include <cagewright/validate/model_volume.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

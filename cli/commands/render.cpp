@@ -1,7 +1,7 @@
 #include "session.h"
 
-#include "io/read_mesh.h"
-#include "render/render.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/render/render.h>
 
 #include <fmt/format.h>
 

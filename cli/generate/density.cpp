@@ -1,7 +1,7 @@
 #include "generate/density.h"
 
 #include "cage/density.h"
-#include "io/read_vertex_weights.h"
+#include <cagewright/io/read_vertex_weights.h>
 
 #include <utility>
 

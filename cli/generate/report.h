@@ -4,7 +4,7 @@
 
 #include "cage/budget_cage.h"
 #include "cage/generate.h"
-#include "validate/cage_metrics.h"
+#include <cagewright/validate/cage_metrics.h>
 
 #include <nlohmann/json.hpp>
 

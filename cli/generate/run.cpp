@@ -6,11 +6,11 @@
 
 #include "cage/hexahedron.h"
 #include "io/atomic_file.h"
-#include "io/read_mesh.h"
-#include "io/write_mesh.h"
-#include "mesh/triangulate.h"
-#include "validate/cage_metrics.h"
 #include "voxel/voxel_mesh.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/write_mesh.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/cage_metrics.h>
 
 #include <array>
 #include <cstdio>

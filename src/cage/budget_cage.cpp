@@ -11,10 +11,10 @@
 #include "cage/symmetric_cage.h"
 #include "cage/unit_frame.h"
 #include "cage/well_shaped.h"
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
 #include "spatial/bvh.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <algorithm>
 #include <string>

@@ -2,9 +2,9 @@
 
 #include "cage/part_options.h"
 #include "cage/unit_frame.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,12 +4,12 @@
 
 #include "cage/stage_time.h"
 #include "cage/unit_frame.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
 #include "obb/oriented_box.h"
 #include "slicing/box_tree.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <vector>
 

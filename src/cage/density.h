@@ -2,7 +2,7 @@
 /// Where the user wants the cage finer, as ImproveOptions::density takes it.
 #pragma once
 
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <array>
 #include <span>

@@ -2,9 +2,9 @@
 
 #include "cage/not_valid.h"
 #include "cage/unite.h"
-#include "mesh/triangulate.h"
 #include "quads/quads.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <array>
 #include <span>

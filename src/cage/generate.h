@@ -5,10 +5,10 @@
 #include "cage/decompose.h"
 #include "cage/register_boxes.h"
 #include "cage/stage_time.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <vector>
 

@@ -2,8 +2,8 @@
 /// Solids with eight corners and six quads: boxes, and boxes bent to share a face with a neighbour.
 #pragma once
 
-#include "core/geometry.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 

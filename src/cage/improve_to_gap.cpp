@@ -1,7 +1,7 @@
 #include "cage/improve_to_gap.h"
 
-#include "mesh/measures.h"
 #include "spatial/bvh.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <array>

@@ -2,11 +2,11 @@
 /// The coarsest cage that stays near its model.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
 #include "improve/improve.h"
-#include "mesh/triangle_mesh.h"
 #include "validate/greatest_gap.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <functional>
 

@@ -5,7 +5,7 @@
 #include "improve/cage_mesh.h"
 #include "improve/objective.h"
 #include "mesh/edge_chains.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,11 @@
 /// Where limbs begin: rings of edges round them. Internal to this module.
 #pragma once
 
-#include "core/progress.h"
 #include "improve/seam_band.h"
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
 #include "obb/oriented_box.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <span>
 #include <vector>

@@ -3,12 +3,12 @@
 #include "cage/part_options.h"
 #include "cage/quad_stage.h"
 #include "mesh/disjoint_sets.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
-#include "mesh/triangulate.h"
 #include "spatial/bvh.h"
 #include "symmetry/half.h"
 #include "validate/greatest_gap.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <cstddef>

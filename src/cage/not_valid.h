@@ -2,8 +2,8 @@
 /// What a cage that did not pass the check is answered with. Internal to this module.
 #pragma once
 
-#include "core/result.h"
-#include "validate/validate_cage.h"
+#include <cagewright/core/result.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "cage/part_options.h"
 
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "cage/pieces.h"
 
-#include "mesh/measures.h"
 #include "voxel/grid_components.h"
 #include "voxel/voxelize.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <array>

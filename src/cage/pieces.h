@@ -2,9 +2,9 @@
 /// A model in several pieces, and the parts of it that get a cage of their own.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cstddef>
 #include <span>

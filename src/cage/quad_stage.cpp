@@ -1,9 +1,9 @@
 #include "cage/quad_stage.h"
 
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
 #include "quads/grid_quads.h"
 #include "validate/greatest_gap.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "cage/hexahedron.h"
-#include "core/progress.h"
-#include "core/result.h"
 #include "obb/oriented_box.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
 
 #include <cstdint>
 #include <span>

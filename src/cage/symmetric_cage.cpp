@@ -6,11 +6,11 @@
 #include "cage/not_valid.h"
 #include "cage/quad_stage.h"
 #include "cage/well_shaped.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
-#include "mesh/triangulate.h"
 #include "spatial/bvh.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "cage/unit_frame.h"
 
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <string>
 

@@ -2,9 +2,9 @@
 /// The similarity between a model's own coordinates and those all lengths are stated in.
 #pragma once
 
-#include "core/geometry.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <span>
 #include <vector>

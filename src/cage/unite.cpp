@@ -2,7 +2,7 @@
 #include "cage/unite.h"
 
 #include "mesh/disjoint_sets.h"
-#include "validate/validate_cage.h"
+#include <cagewright/validate/validate_cage.h>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>

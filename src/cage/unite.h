@@ -3,9 +3,9 @@
 #pragma once
 
 #include "cage/hexahedron.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <span>
 

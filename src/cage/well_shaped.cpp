@@ -1,6 +1,6 @@
 #include "cage/well_shaped.h"
 
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <array>

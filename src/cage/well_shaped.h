@@ -2,9 +2,9 @@
 /// The improvement tried again where it leaves ill shaped faces. Internal to this module.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
 #include "improve/improve.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
 
 namespace cagewright {
 

@@ -1,4 +1,4 @@
-#include "coordinates/compact_weights.h"
+#include <cagewright/coordinates/compact_weights.h>
 
 #include "core/parallel.h"
 

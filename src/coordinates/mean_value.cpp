@@ -1,9 +1,9 @@
-#include "coordinates/mean_value.h"
+#include <cagewright/coordinates/mean_value.h>
 
 #include "coordinates/mean_value_tables.h"
 #include "core/parallel.h"
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <array>

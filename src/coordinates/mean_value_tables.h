@@ -2,7 +2,7 @@
 /// What is computed once for a cage, and the vector code that reads it. Internal to this module.
 #pragma once
 
-#include "coordinates/mean_value.h"
+#include <cagewright/coordinates/mean_value.h>
 
 #include <array>
 #include <cstddef>

@@ -2,10 +2,10 @@
 /// Weights times displacements: where the points go.
 #pragma once
 
-#include "coordinates/compact_weights.h"
-#include "coordinates/weights.h"
-#include "core/geometry.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/coordinates/compact_weights.h>
+#include <cagewright/coordinates/weights.h>
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <span>
 

@@ -1,7 +1,7 @@
-#include "deform/deformer.h"
+#include <cagewright/deform/deformer.h>
 
 #include "deform/apply.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cassert>

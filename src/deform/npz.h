@@ -2,7 +2,7 @@
 /// NumPy's .npz files: arrays in a zip archive. Internal to this module.
 #pragma once
 
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <cstdint>
 #include <cstdio>

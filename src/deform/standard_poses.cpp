@@ -1,8 +1,8 @@
-#include "deform/standard_poses.h"
+#include <cagewright/deform/standard_poses.h>
 
-#include "coordinates/mean_value.h"
 #include "core/parallel.h"
-#include "mesh/measures.h"
+#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "deform/stream.h"
+#include <cagewright/deform/stream.h>
 
 #include "core/parallel.h"
 #include "deform/apply.h"

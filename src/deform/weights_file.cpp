@@ -1,4 +1,4 @@
-#include "deform/weights_file.h"
+#include <cagewright/deform/weights_file.h>
 
 #include "core/parallel.h"
 #include "deform/npz.h"

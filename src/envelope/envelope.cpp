@@ -1,13 +1,13 @@
 #include "envelope/envelope.h"
 
 #include "envelope/well_composed.h"
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
 #include "voxel/bridge.h"
 #include "voxel/mirrored_grid.h"
 #include "voxel/surface_patches.h"
 #include "voxel/voxel_mesh.h"
 #include "voxel/voxelize.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <array>

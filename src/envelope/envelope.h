@@ -2,9 +2,9 @@
 /// A surface of voxels round a model: where the improvement starts when there are no boxes.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 namespace cagewright {
 

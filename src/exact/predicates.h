@@ -3,8 +3,8 @@
 /// coordinates as doubles, for finite coordinates below 1e100 in magnitude.
 #pragma once
 
-#include "core/geometry.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cmath>
 #include <span>

@@ -2,7 +2,7 @@
 /// Cages that are their own mirror images are improved by halves.
 #pragma once
 
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 #include <algorithm>
 #include <cstddef>

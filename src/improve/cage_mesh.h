@@ -6,7 +6,7 @@
 #include "improve/cage_extent.h"
 #include "improve/seam_band.h"
 #include "improve/surface_tree.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <cassert>

@@ -2,7 +2,7 @@
 
 #include "exact/predicates.h"
 #include "mesh/disjoint_sets.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "improve/relax.h"
 #include "improve/shave.h"
 #include "improve/simplify.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <chrono>

@@ -2,11 +2,11 @@
 /// From any valid cage to a good one with few vertices.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
 #include "improve/cage_extent.h"
 #include "improve/seam_band.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <span>
 #include <string>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "improve/guard.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <limits>
 #include <span>

@@ -2,8 +2,8 @@
 /// All vertices of a cage moved at once, its faces left as they are.
 #pragma once
 
-#include "core/progress.h"
 #include "improve/simplify.h"
+#include <cagewright/core/progress.h>
 
 #include <span>
 

@@ -2,7 +2,7 @@
 /// Where a ring round a limb stays.
 #pragma once
 
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 #include <algorithm>
 

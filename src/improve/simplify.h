@@ -2,8 +2,8 @@
 /// Fewer vertices, one edge collapse after the other.
 #pragma once
 
-#include "core/progress.h"
 #include "improve/objective.h"
+#include <cagewright/core/progress.h>
 
 #include <limits>
 #include <vector>

@@ -2,7 +2,7 @@
 /// The nodes of a SurfaceTree, and what is asked of all children of one at once.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cstdint>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "improve/surface_node.h"
-#include "mesh/triangle_mesh.h"
 #include "spatial/distance.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <limits>

@@ -2,7 +2,7 @@
 /// Files that are complete or not there.
 #pragma once
 
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <filesystem>
 #include <string_view>

@@ -2,9 +2,9 @@
 /// The parts of a glTF file below the scene: container, JSON, buffers and accessors.
 #pragma once
 
-#include "core/result.h"
 #include "io/read_file.h"
 #include "io/source.h"
+#include <cagewright/core/result.h>
 
 #include <nlohmann/json.hpp>
 

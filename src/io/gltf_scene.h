@@ -2,9 +2,9 @@
 /// What a glTF file shows, and where each vertex of it comes from.
 #pragma once
 
-#include "core/result.h"
 #include "io/gltf_document.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <Eigen/Geometry>
 

@@ -1,11 +1,11 @@
 #include "io/linked_files.h"
 
 #include "io/gltf_document.h"
-#include "io/mesh_format.h"
 #include "io/read_file.h"
 #include "io/source.h"
 #include "io/text_cursor.h"
 #include "io/uri.h"
+#include <cagewright/io/mesh_format.h>
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "io/mesh_format.h"
+#include <cagewright/io/mesh_format.h>
 
 #include "io/binary.h"
 #include "io/off_header.h"

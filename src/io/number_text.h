@@ -2,7 +2,7 @@
 /// Numbers as text.
 #pragma once
 
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 #include <charconv>
 #include <string>

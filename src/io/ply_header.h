@@ -2,8 +2,8 @@
 /// The header of a PLY file: what the elements after it hold.
 #pragma once
 
-#include "core/result.h"
 #include "io/source.h"
+#include <cagewright/core/result.h>
 
 #include <cstddef>
 #include <optional>

@@ -2,7 +2,7 @@
 /// A whole file in memory.
 #pragma once
 
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <cstddef>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "io/read_vertex_weights.h"
+#include <cagewright/io/read_vertex_weights.h>
 
 #include "io/binary.h"
 #include "io/read_file.h"

@@ -2,10 +2,10 @@
 /// One reader for each format. Use read_mesh(), which chooses among them.
 #pragma once
 
-#include "core/result.h"
-#include "io/rewrite_positions.h"
 #include "io/source.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/core/result.h>
+#include <cagewright/io/rewrite_positions.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <array>
 #include <filesystem>

@@ -2,9 +2,9 @@
 /// A glTF file with other positions, and all else as it was.
 #pragma once
 
-#include "core/result.h"
-#include "io/rewrite_positions.h"
 #include "io/source.h"
+#include <cagewright/core/result.h>
+#include <cagewright/io/rewrite_positions.h>
 
 #include <filesystem>
 #include <optional>

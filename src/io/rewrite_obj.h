@@ -2,8 +2,8 @@
 /// An OBJ file again, with other positions and normals. Use rewrite_positions().
 #pragma once
 
-#include "io/rewrite_positions.h"
 #include "io/source.h"
+#include <cagewright/io/rewrite_positions.h>
 
 #include <span>
 #include <string>

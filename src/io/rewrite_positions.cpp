@@ -1,19 +1,19 @@
-#include "io/rewrite_positions.h"
+#include <cagewright/io/rewrite_positions.h>
 
 #include "io/atomic_file.h"
 #include "io/binary.h"
-#include "io/mesh_format.h"
 #include "io/number_text.h"
 #include "io/off_header.h"
 #include "io/ply_values.h"
 #include "io/read_file.h"
-#include "io/read_mesh.h"
 #include "io/readers.h"
 #include "io/rewrite_gltf.h"
 #include "io/rewrite_obj.h"
 #include "io/text_copy.h"
 #include "io/text_cursor.h"
-#include "io/write_mesh.h"
+#include <cagewright/io/mesh_format.h>
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/write_mesh.h>
 
 #include <algorithm>
 #include <array>

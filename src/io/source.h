@@ -2,7 +2,7 @@
 /// What the readers of all formats share: the bytes of a file and how to complain about them.
 #pragma once
 
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <cstddef>
 #include <string>

@@ -1,9 +1,9 @@
-#include "io/write_mesh.h"
+#include <cagewright/io/write_mesh.h>
 
 #include "io/atomic_file.h"
 #include "io/number_text.h"
 #include "io/source.h"
-#include "mesh/triangulate.h"
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <bit>

@@ -2,7 +2,7 @@
 /// Sets of vertices, corners or pieces that hang together.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -3,8 +3,8 @@
 /// exactly reproducible.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 namespace cagewright {
 

@@ -2,8 +2,8 @@
 /// How the faces of a mesh hang together, as their vertex indices say.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "mesh/triangulate.h"
+#include <cagewright/mesh/triangulate.h>
 
 #include <utility>
 

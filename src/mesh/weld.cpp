@@ -1,4 +1,4 @@
-#include "mesh/weld.h"
+#include <cagewright/mesh/weld.h>
 
 #include <bit>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "obb/minimum_box.h"
 
 #include "core/random.h"
-#include "mesh/measures.h"
 #include "obb/principal_axes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 /// The oriented box of (nearly) least volume.
 #pragma once
 
-#include "core/geometry.h"
 #include "obb/oriented_box.h"
+#include <cagewright/core/geometry.h>
 
 #include <span>
 

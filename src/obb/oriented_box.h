@@ -2,8 +2,8 @@
 /// A box at any angle.
 #pragma once
 
-#include "core/geometry.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <span>

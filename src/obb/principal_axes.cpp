@@ -1,6 +1,6 @@
 #include "obb/principal_axes.h"
 
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <Eigen/Eigenvalues>
 

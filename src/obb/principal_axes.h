@@ -2,8 +2,8 @@
 /// The principal axes of points, and the oriented box along them.
 #pragma once
 
-#include "core/geometry.h"
 #include "obb/oriented_box.h"
+#include <cagewright/core/geometry.h>
 
 #include <span>
 

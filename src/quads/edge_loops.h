@@ -2,7 +2,7 @@
 /// Whole strips of quads put in and taken out: the edge loops of a rigger.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <array>
 #include <optional>

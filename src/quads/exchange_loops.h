@@ -2,8 +2,8 @@
 /// Edge loops put where they pay most.
 #pragma once
 
-#include "core/progress.h"
 #include "quads/relax_quads.h"
+#include <cagewright/core/progress.h>
 
 namespace cagewright {
 

@@ -2,9 +2,9 @@
 /// A cage of blocks: the cells of a grid of few planes that a model touches.
 #pragma once
 
-#include "core/progress.h"
-#include "mesh/polygon_mesh.h"
 #include "quads/solid_grid.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <array>
 #include <vector>

@@ -1,12 +1,12 @@
 #include "quads/grid_quads.h"
 
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
 #include "quads/exchange_loops.h"
 #include "quads/grid_layout.h"
 #include "quads/quad_weights.h"
 #include "quads/relax_quads.h"
 #include "quads/settle_shapes.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <Eigen/Eigenvalues>
 

@@ -2,9 +2,9 @@
 /// A cage of quads that begins as one: blocks round a model, tightened.
 #pragma once
 
-#include "core/progress.h"
 #include "improve/guard.h"
 #include "quads/quads.h"
+#include <cagewright/core/progress.h>
 
 namespace cagewright {
 

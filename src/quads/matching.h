@@ -2,7 +2,7 @@
 /// Pairs out of a graph.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cstdint>
 #include <span>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "improve/cage_mesh.h"
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,5 @@
 #include "quads/quads.h"
 
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
 #include "quads/edge_loops.h"
 #include "quads/matching.h"
 #include "quads/pairing.h"
@@ -9,6 +7,8 @@
 #include "quads/relax_quads.h"
 #include "quads/retile.h"
 #include "quads/settle_shapes.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 

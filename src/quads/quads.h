@@ -2,11 +2,11 @@
 /// A cage of triangles made into one of quads.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
 #include "improve/seam_band.h"
-#include "mesh/polygon_mesh.h"
 #include "quads/quad_shape.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <span>
 #include <vector>

@@ -2,9 +2,9 @@
 /// All vertices of a quad cage moved at once, its faces left as they are.
 #pragma once
 
-#include "core/progress.h"
 #include "improve/objective.h"
 #include "quads/quad_guard.h"
+#include <cagewright/core/progress.h>
 
 namespace cagewright {
 

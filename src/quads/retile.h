@@ -2,8 +2,8 @@
 /// Neighbouring faces exchanged for others with the same border.
 #pragma once
 
-#include "core/progress.h"
 #include "quads/pairing.h"
+#include <cagewright/core/progress.h>
 
 namespace cagewright {
 

@@ -1,11 +1,11 @@
 #include "quads/solid_grid.h"
 
 #include "envelope/well_composed.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "voxel/bridge.h"
 #include "voxel/mirrored_grid.h"
 #include "voxel/voxelize.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <utility>

@@ -2,10 +2,10 @@
 /// What a cage must contain, as the voxels of a fine grid.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cstdint>
 #include <vector>

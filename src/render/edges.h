@@ -2,7 +2,7 @@
 /// The lines and points of a mesh that a picture shows.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <utility>
 #include <vector>

@@ -2,7 +2,7 @@
 /// The little of OpenGL 3.3 that the renderer needs, without a window. Private to the module.
 #pragma once
 
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <epoxy/gl.h>
 

@@ -1,4 +1,4 @@
-#include "render/image.h"
+#include <cagewright/render/image.h>
 
 #include "io/atomic_file.h"
 #include "io/read_file.h"

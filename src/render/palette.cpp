@@ -1,4 +1,4 @@
-#include "render/palette.h"
+#include <cagewright/render/palette.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "render/render.h"
+#include <cagewright/render/render.h>
 
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
 #include "render/edges.h"
 #include "render/gl.h"
 #include "render/shaders.h"
 #include "render/smooth_normals.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <cmath>

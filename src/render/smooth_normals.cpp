@@ -2,8 +2,8 @@
 
 #include "core/parallel.h"
 #include "mesh/disjoint_sets.h"
-#include "mesh/measures.h"
 #include "render/edges.h"
+#include <cagewright/mesh/measures.h>
 
 #include <tbb/parallel_sort.h>
 

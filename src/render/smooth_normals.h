@@ -2,7 +2,7 @@
 /// Normals that make a faceted mesh look smooth and leave its creases sharp.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <vector>
 

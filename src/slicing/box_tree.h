@@ -2,13 +2,13 @@
 /// A shape cut again and again: the tree of oriented boxes around its parts.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
 #include "obb/oriented_box.h"
 #include "slicing/cross_section.h"
 #include "slicing/partition.h"
 #include "slicing/published_rule.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
 
 #include <array>
 #include <cstdint>

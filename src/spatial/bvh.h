@@ -2,9 +2,9 @@
 /// A hierarchy of boxes over triangles: nearest points, overlaps, rays, distances.
 #pragma once
 
-#include "core/geometry.h"
-#include "mesh/triangle_mesh.h"
 #include "spatial/distance.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <cstddef>

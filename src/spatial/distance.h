@@ -2,7 +2,7 @@
 /// Distances between points, segments and triangles, in double precision.
 #pragma once
 
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 namespace cagewright {
 

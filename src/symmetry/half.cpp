@@ -1,7 +1,7 @@
 #include "symmetry/half.h"
 
 #include "mesh/disjoint_sets.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cmath>

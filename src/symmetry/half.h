@@ -5,10 +5,10 @@
 /// whole is made of it last.
 #pragma once
 
-#include "core/geometry.h"
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
 #include "symmetry/mirror_plane.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <optional>

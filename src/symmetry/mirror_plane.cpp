@@ -1,8 +1,8 @@
 #include "symmetry/mirror_plane.h"
 
 #include "core/parallel.h"
-#include "mesh/measures.h"
 #include "spatial/bvh.h"
+#include <cagewright/mesh/measures.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

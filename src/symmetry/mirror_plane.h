@@ -2,9 +2,9 @@
 /// The plane in which a model is its own mirror image, or nearly so.
 #pragma once
 
-#include "core/geometry.h"
-#include "core/progress.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/core/progress.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <optional>
 

@@ -1,9 +1,9 @@
-#include "validate/cage_metrics.h"
+#include <cagewright/validate/cage_metrics.h>
 
 #include "core/parallel.h"
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
 #include "spatial/bvh.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <array>

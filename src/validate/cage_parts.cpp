@@ -1,7 +1,7 @@
 #include "validate/cage_parts.h"
 
 #include "exact/predicates.h"
-#include "mesh/triangulate.h"
+#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 

@@ -2,10 +2,10 @@
 /// A cage as the triangles that any program may cut it into.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
-#include "mesh/weld.h"
 #include "spatial/bvh.h"
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
+#include <cagewright/mesh/weld.h>
 
 #include <cstdint>
 #include <vector>

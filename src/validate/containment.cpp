@@ -2,7 +2,7 @@
 
 #include "core/random.h"
 #include "exact/predicates.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <cmath>

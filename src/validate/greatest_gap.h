@@ -2,9 +2,9 @@
 /// How far a surface goes from another at most: proved, not sampled.
 #pragma once
 
-#include "core/geometry.h"
-#include "mesh/triangle_mesh.h"
 #include "spatial/bvh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 namespace cagewright {
 

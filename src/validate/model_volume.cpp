@@ -1,10 +1,10 @@
-#include "validate/model_volume.h"
+#include <cagewright/validate/model_volume.h>
 
 #include "core/parallel.h"
-#include "mesh/measures.h"
 #include "mesh/topology.h"
-#include "mesh/weld.h"
 #include "validate/containment.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/weld.h>
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include "core/parallel.h"
 #include "exact/predicates.h"
-#include "mesh/weld.h"
 #include "spatial/bvh.h"
+#include <cagewright/mesh/weld.h>
 
 #include <algorithm>
 

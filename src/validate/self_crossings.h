@@ -2,9 +2,9 @@
 /// Where a model runs through itself.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cstddef>
 

@@ -1,4 +1,4 @@
-#include "validate/validate_cage.h"
+#include <cagewright/validate/validate_cage.h>
 
 #include "core/parallel.h"
 #include "exact/predicates.h"

@@ -2,11 +2,11 @@
 /// Which voxels are inside.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
 #include "voxel/surface_patches.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 namespace cagewright {
 

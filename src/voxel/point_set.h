@@ -2,8 +2,8 @@
 /// Points that fill a model evenly.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 /// A dirty surface taken apart into oriented patches.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cstdint>
 #include <vector>

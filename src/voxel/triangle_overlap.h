@@ -2,7 +2,7 @@
 /// Which cells of a grid a triangle touches.
 #pragma once
 
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 /// A grid of cubes at any angle, each outside, inside or on a surface.
 #pragma once
 
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 #include <algorithm>
 #include <array>

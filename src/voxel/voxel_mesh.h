@@ -2,8 +2,8 @@
 /// Voxels as a mesh, to look at.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <vector>
 

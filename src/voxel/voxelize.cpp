@@ -1,9 +1,9 @@
 #include "voxel/voxelize.h"
 
 #include "core/parallel.h"
-#include "mesh/measures.h"
 #include "voxel/classify.h"
 #include "voxel/triangle_overlap.h"
+#include <cagewright/mesh/measures.h>
 
 #include <atomic>
 #include <cmath>

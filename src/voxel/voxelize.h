@@ -2,12 +2,12 @@
 /// A mesh as a grid of voxels.
 #pragma once
 
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/triangle_mesh.h"
 #include "obb/oriented_box.h"
 #include "voxel/surface_patches.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 namespace cagewright {
 

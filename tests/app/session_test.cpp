@@ -2,11 +2,11 @@
 
 #include "app/document/binding.h"
 #include "app/recovery.h"
-#include "deform/weights_file.h"
-#include "io/read_mesh.h"
-#include "io/write_mesh.h"
 #include "mesh/shapes.h"
 #include "waiting.h"
+#include <cagewright/deform/weights_file.h>
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/write_mesh.h>
 
 #include <QFile>
 #include <QTemporaryDir>

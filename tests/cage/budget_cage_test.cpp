@@ -1,14 +1,14 @@
 #include "cage/budget_cage.h"
 
 #include "core/random.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "mesh/topology.h"
 #include "spatial/bvh.h"
 #include "support/models.h"
-#include "validate/cage_metrics.h"
 #include "validate/greatest_gap.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -1,10 +1,10 @@
 #include "cage/generate.h"
 
 #include "core/random.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "mesh/topology.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -7,7 +7,7 @@
 #include "support/figures.h"
 #include "support/models.h"
 #include "support/quads.h"
-#include "validate/validate_cage.h"
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -1,14 +1,14 @@
 #include "cage/budget_cage.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
-#include "mesh/triangulate.h"
 #include "spatial/bvh.h"
 #include "support/figures.h"
 #include "support/models.h"
 #include "support/pairing.h"
 #include "support/quads.h"
 #include "validate/greatest_gap.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 

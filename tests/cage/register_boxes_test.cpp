@@ -1,7 +1,7 @@
 #include "cage/register_boxes.h"
 
 #include "cage/unite.h"
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 

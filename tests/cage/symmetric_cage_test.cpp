@@ -1,12 +1,12 @@
 #include "cage/budget_cage.h"
 
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "spatial/bvh.h"
 #include "support/figures.h"
 #include "support/pairing.h"
 #include "validate/greatest_gap.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

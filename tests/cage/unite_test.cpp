@@ -1,6 +1,6 @@
 #include "cage/unite.h"
 
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include <tbb/task_arena.h>
 

@@ -1,8 +1,8 @@
 #include "cage/well_shaped.h"
 
 #include "mesh/shapes.h"
-#include "validate/cage_metrics.h"
-#include "validate/validate_cage.h"
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 

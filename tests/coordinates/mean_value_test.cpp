@@ -1,10 +1,10 @@
-#include "coordinates/mean_value.h"
+#include <cagewright/coordinates/mean_value.h>
 
 #include "coordinates/points_near.h"
 #include "coordinates/reference.h"
 #include "core/random.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/random.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cmath>
 #include <string>

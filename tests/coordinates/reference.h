@@ -3,7 +3,7 @@
 /// code under test.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 

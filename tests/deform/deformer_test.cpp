@@ -1,9 +1,9 @@
-#include "deform/deformer.h"
+#include <cagewright/deform/deformer.h>
 
 #include "core/random.h"
-#include "deform/stream.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include <cagewright/deform/stream.h>
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

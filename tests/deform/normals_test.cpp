@@ -1,4 +1,4 @@
-#include "deform/normals.h"
+#include <cagewright/deform/normals.h>
 
 #include "mesh/shapes.h"
 

@@ -2,11 +2,11 @@
 // CAGEWRIGHT_MODELS names.
 
 #include "coordinates/reference.h"
-#include "deform/deformer.h"
-#include "io/read_mesh.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
-#include "mesh/triangulate.h"
+#include <cagewright/deform/deformer.h>
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <gtest/gtest.h>
 

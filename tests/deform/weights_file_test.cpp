@@ -1,4 +1,4 @@
-#include "deform/weights_file.h"
+#include <cagewright/deform/weights_file.h>
 
 #include "core/random.h"
 #include "mesh/shapes.h"

@@ -1,9 +1,9 @@
 #include "envelope/well_composed.h"
 
 #include "core/random.h"
-#include "mesh/triangulate.h"
-#include "validate/validate_cage.h"
 #include "voxel/voxel_mesh.h"
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "core/random.h"
 #include "mesh/edge_chains.h"
 #include "mesh/shapes.h"
-#include "validate/validate_cage.h"
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 #include "improve/improve.h"
 
 #include "envelope/envelope.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "spatial/bvh.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

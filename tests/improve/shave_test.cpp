@@ -1,9 +1,9 @@
 #include "improve/shave.h"
 
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "symmetry/half.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 

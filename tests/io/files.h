@@ -2,9 +2,9 @@
 /// Files for the tests of readers and writers: folders that vanish, and small valid files.
 #pragma once
 
-#include "core/result.h"
-#include "io/mesh_format.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/core/result.h>
+#include <cagewright/io/mesh_format.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <filesystem>
 #include <ostream>

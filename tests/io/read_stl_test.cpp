@@ -1,4 +1,4 @@
-#include "io/read_mesh.h"
+#include <cagewright/io/read_mesh.h>
 
 #include "io/files.h"
 

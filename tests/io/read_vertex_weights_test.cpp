@@ -1,4 +1,4 @@
-#include "io/read_vertex_weights.h"
+#include <cagewright/io/read_vertex_weights.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "io/files.h"
-#include "io/read_mesh.h"
-#include "io/rewrite_positions.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/rewrite_positions.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-#include "io/rewrite_positions.h"
+#include <cagewright/io/rewrite_positions.h>
 
 #include "io/files.h"
-#include "io/read_mesh.h"
+#include <cagewright/io/read_mesh.h>
 
 #include <gtest/gtest.h>
 

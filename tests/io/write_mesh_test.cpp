@@ -1,7 +1,7 @@
-#include "io/write_mesh.h"
+#include <cagewright/io/write_mesh.h>
 
 #include "io/files.h"
-#include "io/read_mesh.h"
+#include <cagewright/io/read_mesh.h>
 
 #include "core/random.h"
 #include "mesh/shapes.h"

@@ -1,4 +1,4 @@
-#include "mesh/measures.h"
+#include <cagewright/mesh/measures.h>
 
 #include "mesh/shapes.h"
 

@@ -1,8 +1,8 @@
 #include "mesh/topology.h"
 
 #include "mesh/shapes.h"
-#include "mesh/weld.h"
 #include "support/models.h"
+#include <cagewright/mesh/weld.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-#include "mesh/triangulate.h"
+#include <cagewright/mesh/triangulate.h>
 
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include "obb/oriented_box.h"
 
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "obb/test_points.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 /// Points and rotations for the tests of boxes.
 #pragma once
 
-#include "core/geometry.h"
 #include "core/random.h"
+#include <cagewright/core/geometry.h>
 
 #include <cstdint>
 #include <numbers>

@@ -6,7 +6,7 @@
 #include "spatial/bvh.h"
 #include "support/figures.h"
 #include "support/models.h"
-#include "validate/validate_cage.h"
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -5,11 +5,11 @@
 #include "improve/improve.h"
 #include "mesh/shapes.h"
 #include "mesh/topology.h"
-#include "mesh/triangulate.h"
 #include "quads/settle_shapes.h"
 #include "spatial/bvh.h"
 #include "support/models.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

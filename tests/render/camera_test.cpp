@@ -1,4 +1,4 @@
-#include "render/camera.h"
+#include <cagewright/render/camera.h>
 
 #include "mesh/shapes.h"
 

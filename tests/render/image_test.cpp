@@ -1,4 +1,4 @@
-#include "render/image.h"
+#include <cagewright/render/image.h>
 
 #include <gtest/gtest.h>
 #include <png.h>

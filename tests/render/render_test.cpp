@@ -1,4 +1,4 @@
-#include "render/render.h"
+#include <cagewright/render/render.h>
 
 #include "mesh/shapes.h"
 

@@ -1,7 +1,7 @@
 #include "render/smooth_normals.h"
 
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include "spatial/bvh.h"
 
 #include "core/random.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

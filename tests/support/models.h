@@ -3,8 +3,8 @@
 /// CAGEWRIGHT_MODELS.
 #pragma once
 
-#include "io/read_mesh.h"
-#include "mesh/triangulate.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <cstdlib>
 #include <filesystem>

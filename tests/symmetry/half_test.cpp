@@ -1,8 +1,8 @@
 #include "symmetry/half.h"
 
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 #include "symmetry/mirror_plane.h"
 
 #include "core/random.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "support/figures.h"
 #include "support/models.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -1,7 +1,7 @@
-#include "validate/cage_metrics.h"
+#include <cagewright/validate/cage_metrics.h>
 
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -1,9 +1,9 @@
-#include "validate/validate_cage.h"
+#include <cagewright/validate/validate_cage.h>
 
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
-#include "mesh/triangulate.h"
 #include "support/models.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <gtest/gtest.h>
 

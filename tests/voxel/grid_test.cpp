@@ -1,6 +1,4 @@
 // Of what is done with a grid of voxels once it is made.
-#include "mesh/measures.h"
-#include "mesh/triangulate.h"
 #include "obb/principal_axes.h"
 #include "voxel/bridge.h"
 #include "voxel/grid_components.h"
@@ -8,6 +6,8 @@
 #include "voxel/test_meshes.h"
 #include "voxel/voxel_mesh.h"
 #include "voxel/voxelize.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <gtest/gtest.h>
 

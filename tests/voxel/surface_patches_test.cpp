@@ -1,7 +1,7 @@
 #include "voxel/surface_patches.h"
 
-#include "mesh/measures.h"
 #include "voxel/test_meshes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 

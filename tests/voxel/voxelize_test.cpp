@@ -1,9 +1,9 @@
 #include "voxel/voxelize.h"
 
-#include "mesh/measures.h"
 #include "obb/principal_axes.h"
 #include "support/models.h"
 #include "voxel/test_meshes.h"
+#include <cagewright/mesh/measures.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

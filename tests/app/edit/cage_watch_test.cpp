@@ -1,10 +1,10 @@
 #include "app/edit/cage_watch.h"
 
 #include "core/random.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
 #include "quads.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 

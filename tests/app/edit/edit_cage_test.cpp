@@ -3,11 +3,11 @@
 #include "app/edit/cage_graph.h"
 #include "app/edit/select.h"
 #include "core/random.h"
-#include "mesh/measures.h"
 #include "mesh/shapes.h"
-#include "mesh/triangulate.h"
 #include "quads.h"
-#include "validate/validate_cage.h"
+#include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
 

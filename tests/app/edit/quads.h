@@ -2,8 +2,8 @@
 /// Cages of quads to edit in tests.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
 #include "mesh/topology.h"
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <cmath>
 #include <numbers>

@@ -2,10 +2,10 @@
 
 #include "app/view/viewport.h"
 #include "core/random.h"
-#include "io/read_mesh.h"
-#include "io/write_mesh.h"
 #include "mesh/shapes.h"
 #include "waiting.h"
+#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/write_mesh.h>
 
 #include <QApplication>
 #include <QCheckBox>

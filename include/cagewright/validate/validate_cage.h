@@ -2,11 +2,11 @@
 /// The judge: is this a valid cage of this model?
 #pragma once
 
-#include "core/geometry.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <cstddef>

@@ -2,9 +2,9 @@
 /// Deforming without keeping weights: any number of vertices, in double, in no memory.
 #pragma once
 
-#include "coordinates/mean_value.h"
-#include "core/progress.h"
-#include "core/result.h"
+#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
 
 #include <cstddef>
 #include <span>

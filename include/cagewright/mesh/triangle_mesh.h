@@ -2,7 +2,7 @@
 /// What algorithms take: indexed triangles, owned or in someone else's memory.
 #pragma once
 
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,7 @@
 /// One number for each vertex of a model, from a file of its own.
 #pragma once
 
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <cstddef>
 #include <filesystem>

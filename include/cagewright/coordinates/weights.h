@@ -2,7 +2,7 @@
 /// How much each point follows each cage vertex: the result of every kind of coordinates.
 #pragma once
 
-#include "coordinates/aligned_buffer.h"
+#include <cagewright/coordinates/aligned_buffer.h>
 
 #include <algorithm>
 #include <cassert>

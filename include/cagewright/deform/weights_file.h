@@ -2,11 +2,11 @@
 /// Weights in a file, so that a model is bound once.
 #pragma once
 
-#include "coordinates/mean_value.h"
-#include "coordinates/weights.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/weights.h>
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <cstdint>
 #include <filesystem>

@@ -2,8 +2,8 @@
 /// A mesh as it stands in a file: faces of any number of sides.
 #pragma once
 
-#include "core/geometry.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
 #include <cstddef>
@@ -17,10 +17,12 @@ namespace cagewright {
 /// V vertices and F faces of three or more corners each. Vertices keep the order of the file.
 class PolygonMesh {
 public:
-  std::vector<Vec3> positions;              ///< V positions, in the file's own coordinates
-  std::vector<std::array<float, 4>> colors; ///< V colours (red, green, blue, alpha in [0, 1]), or none
-  std::vector<std::string> group_names;     ///< named parts of the mesh (OBJ objects and groups), or none
-  std::vector<Index> face_groups;           ///< F indices into group_names, or none
+  std::vector<Vec3> positions; ///< V positions, in the file's own coordinates
+  std::vector<std::array<float, 4>>
+      colors; ///< V colours (red, green, blue, alpha in [0, 1]), or none
+  std::vector<std::string>
+      group_names;                ///< named parts of the mesh (OBJ objects and groups), or none
+  std::vector<Index> face_groups; ///< F indices into group_names, or none
 
   PolygonMesh() = default;
   explicit PolygonMesh(const TriangleMesh& mesh) : positions(mesh.positions) {

@@ -2,7 +2,7 @@
 /// Pictures in memory, and as PNG.
 #pragma once
 
-#include "core/result.h"
+#include <cagewright/core/result.h>
 
 #include <array>
 #include <cstddef>

@@ -2,8 +2,8 @@
 /// Normals that follow a moving mesh, with its hard edges and seams.
 #pragma once
 
-#include "core/geometry.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -2,11 +2,11 @@
 /// Mean value coordinates for closed cages of triangles and quads.
 #pragma once
 
-#include "coordinates/weights.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/coordinates/weights.h>
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <cstdint>
 #include <memory>

@@ -2,7 +2,7 @@
 /// Where a picture is taken from.
 #pragma once
 
-#include "core/geometry.h"
+#include <cagewright/core/geometry.h>
 
 #include <optional>
 #include <string_view>

@@ -7,7 +7,8 @@
 
 namespace cagewright {
 
-/// A point or a vector: three packed doubles, so that std::span<const Vec3> is also a flat xyz array.
+/// A point or a vector: three packed doubles, so that std::span<const Vec3> is also a flat xyz
+/// array.
 using Vec3 = Eigen::Vector3d;
 /// Three columns: of an orthonormal frame, its axes.
 using Mat3 = Eigen::Matrix3d;

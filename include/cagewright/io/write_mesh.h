@@ -2,9 +2,9 @@
 /// Meshes to files.
 #pragma once
 
-#include "core/result.h"
-#include "io/mesh_format.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/core/result.h>
+#include <cagewright/io/mesh_format.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <filesystem>
 #include <string>

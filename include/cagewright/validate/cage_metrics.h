@@ -2,9 +2,9 @@
 /// How good a cage is, in numbers.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
-#include "validate/model_volume.h"
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
+#include <cagewright/validate/model_volume.h>
 
 #include <cstddef>
 #include <optional>

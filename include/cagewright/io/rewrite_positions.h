@@ -2,8 +2,8 @@
 /// A model file with other positions, and all else as it was.
 #pragma once
 
-#include "core/result.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <filesystem>
 #include <limits>

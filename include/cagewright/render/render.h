@@ -2,11 +2,11 @@
 /// Pictures of models and cages, made without a display.
 #pragma once
 
-#include "core/result.h"
-#include "mesh/polygon_mesh.h"
-#include "render/camera.h"
-#include "render/image.h"
-#include "render/palette.h"
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/render/camera.h>
+#include <cagewright/render/image.h>
+#include <cagewright/render/palette.h>
 
 #include <memory>
 #include <span>

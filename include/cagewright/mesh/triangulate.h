@@ -2,8 +2,8 @@
 /// Polygons to triangles.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <vector>
 

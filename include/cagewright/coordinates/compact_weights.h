@@ -2,11 +2,11 @@
 /// Weights in half the memory, with a proven bound on what that costs.
 #pragma once
 
-#include "coordinates/mean_value.h"
-#include "coordinates/weights.h"
-#include "core/geometry.h"
-#include "core/progress.h"
-#include "core/result.h"
+#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/weights.h>
+#include <cagewright/core/geometry.h>
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
 
 #include <cstdint>
 #include <span>

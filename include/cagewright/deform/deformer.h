@@ -2,13 +2,13 @@
 /// A model bound to a cage, for moving it again and again.
 #pragma once
 
-#include "coordinates/compact_weights.h"
-#include "coordinates/mean_value.h"
-#include "coordinates/weights.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "deform/normals.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/coordinates/compact_weights.h>
+#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/weights.h>
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/deform/normals.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <cstdint>
 #include <optional>

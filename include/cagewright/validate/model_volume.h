@@ -2,7 +2,7 @@
 /// The volume of a model that may be open, inverted or dirty.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <string_view>
 

@@ -10,13 +10,13 @@
 namespace cagewright {
 
 enum class ErrorCode {
-  cannot_open,    ///< the file is missing, is not a file, or may not be read
-  cannot_write,   ///< the output cannot be created or completed
-  malformed,      ///< the file's content does not follow its format
-  unsupported,    ///< the format, or a feature of it, is not one we read or write
-  too_large,      ///< the input needs more memory or larger indices than there are
-  unfit_model,    ///< the model has no extent to build a cage around
-  invalid_cage,   ///< the cage is not what the operation needs (open, wrong size, self-intersecting)
+  cannot_open,  ///< the file is missing, is not a file, or may not be read
+  cannot_write, ///< the output cannot be created or completed
+  malformed,    ///< the file's content does not follow its format
+  unsupported,  ///< the format, or a feature of it, is not one we read or write
+  too_large,    ///< the input needs more memory or larger indices than there are
+  unfit_model,  ///< the model has no extent to build a cage around
+  invalid_cage, ///< the cage is not what the operation needs (open, wrong size, self-intersecting)
   invalid_option, ///< an option is out of its range, or two contradict each other
   no_valid_cage,  ///< no cage could be found that passes the exact check
   mismatch,       ///< two inputs that belong together do not (model and weights, rest and pose)
@@ -67,8 +67,7 @@ struct Error {
 ///
 /// The names are those of std::expected, which g++ 12 has only in C++23 mode; when the toolchain
 /// moves on this class becomes an alias.
-template <class T>
-class [[nodiscard]] Result {
+template <class T> class [[nodiscard]] Result {
 public:
   Result(T value) : state_(std::move(value)) {}
   Result(Error error) : state_(std::move(error)) {}
@@ -93,6 +92,8 @@ private:
 /// Success, or the reason there is none: for functions that act rather than make something.
 using Status = Result<std::monostate>;
 
-inline Status success() { return std::monostate{}; }
+inline Status success() {
+  return std::monostate{};
+}
 
 } // namespace cagewright

@@ -2,7 +2,7 @@
 /// Sizes of meshes.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <span>
 

@@ -2,8 +2,8 @@
 /// Merging vertices that have exactly the same position.
 #pragma once
 
-#include "mesh/polygon_mesh.h"
-#include "mesh/triangle_mesh.h"
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <span>
 #include <vector>

@@ -2,10 +2,10 @@
 /// Two deformations defined for every model, to compare how well cages carry them.
 #pragma once
 
-#include "core/geometry.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "mesh/polygon_mesh.h"
+#include <cagewright/core/geometry.h>
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
 
 #include <array>
 #include <cstddef>
