@@ -2,7 +2,7 @@
 //
 //   make_cage MODEL CAGE.obj
 
-#include "cage/generate.h"
+#include <cagewright/cage/generate.h>
 #include <cagewright/io/read_mesh.h>
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/triangulate.h>
@@ -20,18 +20,20 @@ int main(int argc, char** argv) {
     std::cerr << mesh.error().message << '\n';
     return 2;
   }
-  GenerateOptions options;
-  options.boxes.slicing.depth = 4;
-  const Result<GeneratedCage> made = generate_cage(to_triangle_mesh(*mesh), options);
+  const Result<GeneratedCage> made = generate(to_triangle_mesh(*mesh), {.vertices = 60});
   if (!made) {
     std::cerr << made.error().message << '\n';
     return 1;
   }
-  const Status written = write_mesh(PolygonMesh(made->cage), argv[2]);
+  for (const Remark& remark : made->remarks) {
+    std::cout << remark.message << '\n';
+  }
+  const Status written = write_mesh(made->faces, argv[2]);
   if (!written) {
     std::cerr << written.error().message << '\n';
     return 2;
   }
-  std::cout << made->leaves.size() << " boxes, " << made->cage.positions.size() << " vertices\n";
+  std::cout << made->figures.vertices << " vertices, " << made->figures.volume_ratio
+            << " times the model's volume\n";
   return 0;
 }

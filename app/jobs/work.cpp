@@ -1,7 +1,7 @@
 #include "app/jobs/work.h"
 
 #include "app/document/binding.h"
-#include "cage/density.h"
+#include <cagewright/cage/density.h>
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
@@ -70,7 +70,7 @@ QString remark_of(const BudgetCage& made, const BudgetCageOptions& options) {
 Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
                            const Progress& progress) {
   if (settings.method == CageMethod::union_of_boxes) {
-    Result<GeneratedCage> made = generate_cage(model.view(), settings.options.boxes, progress);
+    Result<BoxCage> made = make_box_cage(model.view(), settings.options.boxes, progress);
     if (!made) {
       return made.error();
     }

@@ -6,8 +6,8 @@
 /// cli/generate/<group>_options.cpp; what the result says of it in report.cpp.
 #pragma once
 
+#include "cage/box_cage.h"
 #include "cage/budget_cage.h"
-#include "cage/generate.h"
 
 #include <CLI/CLI.hpp>
 
@@ -22,7 +22,7 @@ struct GenerateArguments {
   std::string output;
   std::string json;
   Emit emit = Emit::cage;
-  GenerateOptions options;  ///< of the union of the boxes
+  BoxCageOptions options;   ///< of the union of the boxes
   bool has_budget = false;  ///< an option asks for more than the union of the boxes
   int vertices = 0;         ///< 0: not given
   std::string density;      ///< a file, or "colors"; empty: even
@@ -33,7 +33,7 @@ struct GenerateArguments {
 void add_slicing_options(CLI::App& command, SlicingOptions& slicing);
 
 /// --resolution, --registration, --pieces: pipeline_options.cpp
-void add_pipeline_options(CLI::App& command, GenerateOptions& options);
+void add_pipeline_options(CLI::App& command, BoxCageOptions& options);
 
 /// --vertices, --faces, --max-gap, --method, --clearance and the rest: budget_options.cpp
 void add_budget_options(CLI::App& command, GenerateArguments& arguments);

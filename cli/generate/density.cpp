@@ -1,6 +1,6 @@
 #include "generate/density.h"
 
-#include "cage/density.h"
+#include <cagewright/cage/density.h>
 #include <cagewright/io/read_vertex_weights.h>
 
 #include <utility>

@@ -5,7 +5,7 @@
 
 namespace cagewright::cli {
 
-void add_pipeline_options(CLI::App& command, GenerateOptions& options) {
+void add_pipeline_options(CLI::App& command, BoxCageOptions& options) {
   const char* group = "Pipeline";
   command
       .add_option("--resolution", options.boxes.resolution,

@@ -134,11 +134,11 @@ nlohmann::json to_json(const BoxDecomposition& boxes, const std::vector<int>& co
   return j;
 }
 
-nlohmann::json to_json(const GeneratedCage& made, const CageMetrics& metrics) {
+nlohmann::json to_json(const BoxCage& made, const CageMetrics& metrics) {
   nlohmann::json j = to_json(made.boxes, made.leaves);
   j["registration"] = to_json(made.registration);
   j["cage"] = figures_as_json(metrics);
-  j["cage"]["valid"] = true; // generate_cage() returns no other
+  j["cage"]["valid"] = true; // make_box_cage() returns no other
   if (made.faces.face_count() < made.cage.triangles.size()) {
     j["quads"] = to_json(report_of(made.faces));
   }
@@ -217,7 +217,7 @@ std::string summary(const BoxDecomposition& boxes, const std::vector<int>& cover
          boxes_line(boxes, cover.size()) + times_line(boxes.times);
 }
 
-std::string summary(const GeneratedCage& made, const CageMetrics& metrics) {
+std::string summary(const BoxCage& made, const CageMetrics& metrics) {
   return "a valid cage\n" + boxes_line(made.boxes, made.leaves.size()) +
          fmt::format("  {} pairs of neighbouring boxes joined at a common quad\n",
                      made.registration.joints.size()) +

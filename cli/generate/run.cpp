@@ -83,8 +83,7 @@ int emit_stage(const GenerateArguments& arguments, const Session& session,
 int make_cage(const GenerateArguments& arguments, const Session& session,
               const TriangleMesh& model) {
   const Progress progress = session.progress();
-  const Result<GeneratedCage> made =
-      generate_cage(model, arguments.options, progress.part(0, 0.97));
+  const Result<BoxCage> made = make_box_cage(model, arguments.options, progress.part(0, 0.97));
   if (!made) {
     return fail(in_file(arguments.model, made.error()));
   }

@@ -30,9 +30,9 @@ constexpr double limbs_found = 0.05; // of the improvement
 
 Result<TriangleMesh> start_from_boxes(TriangleView model, const BudgetCageOptions& options,
                                       BudgetCage& made, const Progress& progress) {
-  GenerateOptions generate = options.boxes;
+  BoxCageOptions generate = options.boxes;
   generate.boxes.clearance = options.improve.clearance;
-  Result<GeneratedCage> boxes = generate_cage(model, generate, progress);
+  Result<BoxCage> boxes = make_box_cage(model, generate, progress);
   if (!boxes) {
     return boxes.error();
   }

@@ -2,10 +2,11 @@
 /// A cage of at most so many vertices.
 #pragma once
 
-#include "cage/generate.h"
+#include "cage/box_cage.h"
 #include "improve/improve.h"
 #include "quads/quads.h"
 #include "symmetry/half.h"
+#include <cagewright/cage/generate_options.h>
 
 #include <optional>
 #include <string>
@@ -17,15 +18,6 @@ namespace cagewright {
 enum class CageStart {
   envelope, ///< a surface of voxels: any topology, tight everywhere
   obb,      ///< the union of oriented boxes
-};
-
-/// Whether the cage is to be its own mirror image.
-enum class Symmetry {
-  off,
-  automatic, ///< if the model is, in any plane: see detect_mirror_plane()
-  x,         ///< in the best plane across this axis, even if the model is not
-  y,
-  z
 };
 
 struct BudgetCageOptions {
@@ -42,7 +34,7 @@ struct BudgetCageOptions {
   /// Of the boxes. Their Pieces hold for both starts: with Pieces::apart each group of pieces gets
   /// a closed cage of its own, and a share of the budget by its surface area; groups whose cages
   /// would meet or lie one within another, or that are too small for the budget, are joined.
-  GenerateOptions boxes = {};
+  BoxCageOptions boxes = {};
   Symmetry symmetry = Symmetry::off;
   /// Quads where they can be. A quad counts as one face. The clearance, the density and the
   /// objective are those of `improve`.
@@ -69,7 +61,7 @@ struct BudgetCage {
   int joined = 0;     ///< groups of pieces that are apart, yet had to share a cage with others
   /// With max_gap: no point of the cage is farther from the model, in diagonals: proved.
   std::optional<double> gap;
-  std::optional<GeneratedCage> boxes;  ///< what the boxes gave, if they were the start
+  std::optional<BoxCage> boxes;        ///< what the boxes gave, if they were the start
   std::string why_not_boxes;           ///< if they were to be the start, and were not
   std::optional<MirrorPairing> mirror; ///< of a cage that is its own mirror image
   std::string why_not_mirrored;        ///< if it was to be, and is not
@@ -80,7 +72,7 @@ struct BudgetCage {
 /// exactly against the model. If the budget cannot be met it is the smallest cage that was found,
 /// and the report says why.
 ///
-/// Errors: those of generate_cage(), envelope() and improve(); no_valid_cage when the result did
+/// Errors: those of make_box_cage(), envelope() and improve(); no_valid_cage when the result did
 /// not pass the check.
 Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& options = {},
                                     const Progress& progress = {});

@@ -7,6 +7,7 @@
 #include "obb/oriented_box.h"
 #include "slicing/box_tree.h"
 #include "voxel/voxel_grid.h"
+#include <cagewright/cage/generate_options.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
 #include <cagewright/mesh/triangle_mesh.h>
@@ -14,12 +15,6 @@
 #include <vector>
 
 namespace cagewright {
-
-/// What becomes of a model in several pieces.
-enum class Pieces {
-  together, ///< one cage: thin bridges of voxels join the pieces
-  apart,    ///< a closed component of the cage for each piece, or group of pieces that touch
-};
 
 struct DecomposeOptions {
   int resolution = 64; ///< voxels along the longest axis of the model's box; 8 to 512

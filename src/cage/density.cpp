@@ -1,4 +1,4 @@
-#include "cage/density.h"
+#include <cagewright/cage/density.h>
 
 #include <algorithm>
 #include <cmath>

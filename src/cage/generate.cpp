@@ -1,161 +1,176 @@
-#include "cage/generate.h"
+#include <cagewright/cage/generate.h>
 
-#include "cage/not_valid.h"
-#include "cage/unite.h"
-#include "quads/quads.h"
+#include "cage/box_cage.h"
+#include "cage/budget_cage.h"
 #include <cagewright/mesh/triangulate.h>
-#include <cagewright/validate/validate_cage.h>
 
-#include <array>
-#include <span>
+#include <algorithm>
 #include <utility>
 
 namespace cagewright {
 namespace {
 
-/// Boxes grow by distinct amounts up to these parts of a voxel before they are united, so that no
-/// two of their faces coincide. The second and third, without joints between boxes, are for the
-/// case that the union does not survive the rounding to the model's coordinates.
-constexpr std::array<double, 3> separations = {0.2, 0.17, 0.13};
+constexpr double made_by = 0.97; // of the time; the figures come after
 
-// Shares of the whole time, for the progress bar.
-constexpr double decomposed = 0.35;
-constexpr double registered = 0.4;
-constexpr double first_union = 0.8; // of what is left: it hardly ever takes another
-
-/// The leaves' boxes and voxels; the voxels stay in the tree.
-std::vector<BoxContents> contents_of(const BoxTree& tree, const std::vector<int>& leaves) {
-  std::vector<BoxContents> contents;
-  contents.reserve(leaves.size());
-  for (const int leaf : leaves) {
-    const BoxNode& node = tree.nodes[static_cast<std::size_t>(leaf)];
-    contents.push_back({node.box, node.voxels});
-  }
-  return contents;
+BoxCageOptions box_options(const GenerateOptions& options) {
+  BoxCageOptions boxes;
+  boxes.boxes.resolution = options.resolution;
+  boxes.boxes.pieces = options.pieces;
+  boxes.boxes.slicing = {.rule = options.slicing,
+                         .depth = options.depth,
+                         .max_boxes = options.max_boxes,
+                         .split_parts = options.split_parts,
+                         .eta = options.eta,
+                         .zeta = options.zeta,
+                         .min_jump = options.min_jump,
+                         .no_jump = options.no_jump,
+                         .min_gain = options.min_gain};
+  boxes.registration = options.registration;
+  boxes.quads = options.quads;
+  return boxes;
 }
 
-TriangleMesh to_model(const BoxDecomposition& boxes, TriangleMesh cage) {
-  for (Vec3& p : cage.positions) {
-    p = boxes.to_model(p);
+std::vector<CageBox> boxes_of(const BoxesMade& made) {
+  std::vector<CageBox> boxes;
+  for (const int leaf : made.leaves) {
+    const OrientedBox box =
+        made.boxes.to_model(made.boxes.tree.nodes[static_cast<std::size_t>(leaf)].box);
+    boxes.push_back({box.center, box.axes, box.half});
   }
-  return cage;
+  return boxes;
 }
 
-/// The union of the solids in the model's coordinates, if it is a valid cage there.
-Result<TriangleMesh> cage_of(const std::vector<Hexahedron>& solids, double separation,
-                             const BoxDecomposition& boxes, TriangleView model, bool allow_pieces,
-                             Stopwatch& watch, const Progress& progress) {
-  Result<TriangleMesh> united_solids =
-      unite(solids, {.separation = separation}, progress.part(0, 0.9));
-  watch.lap("union");
-  if (!united_solids) {
-    return united_solids;
-  }
-  TriangleMesh cage = to_model(boxes, std::move(*united_solids));
-  const Result<ValidityReport> report =
-      validate_cage(TriangleView(cage), model, {.allow_pieces = allow_pieces, .max_listed = 1},
-                    progress.part(0.9, 1));
-  watch.lap("check");
-  if (!report) {
-    return report.error();
-  }
-  if (!report->valid()) {
-    return not_valid(*report, "try another resolution or depth");
-  }
-  return cage;
+void keep_boxes(GeneratedCage& result, BoxesMade made) {
+  result.boxes = boxes_of(made);
+  result.box_tree = std::make_shared<const BoxesMade>(std::move(made));
 }
 
-/// Quads that would make the cage invalid along their other diagonal are left as triangles.
-PolygonMesh with_quads(const TriangleMesh& cage, TriangleView model, bool allow_pieces) {
-  PolygonMesh faces = pair_coplanar(cage);
-  constexpr int attempts = 8;
-  for (int attempt = 0; attempt < attempts; ++attempt) {
-    const Result<ValidityReport> report = validate_cage(
-        faces, model, {.allow_pieces = allow_pieces, .max_listed = faces.face_count()});
-    if (!report) {
-      break;
-    }
-    if (report->valid()) {
-      return faces;
-    }
-    std::vector<char> at_fault(faces.face_count(), 0);
-    for (const Violation& violation : report->violations) {
-      if (violation.kind == ViolationKind::face_contact) {
-        at_fault[violation.elements[1]] = 1;
-      } else if (violation.kind == ViolationKind::self_intersection) {
-        at_fault[violation.elements[0]] = at_fault[violation.elements[1]] = 1;
-      } else if (violation.kind == ViolationKind::degenerate_face) {
-        at_fault[violation.elements[0]] = 1;
-      }
-    }
-    PolygonMesh next;
-    next.positions = faces.positions;
-    for (std::size_t f = 0; f < faces.face_count(); ++f) {
-      const std::span<const Index> face = faces.face(f);
-      if (at_fault[f] != 0 && face.size() == 4) {
-        next.add_face({face[0], face[1], face[2]});
-        next.add_face({face[0], face[2], face[3]});
-      } else {
-        next.add_face(face);
-      }
-    }
-    faces = std::move(next);
+Result<GeneratedCage> union_of_boxes(TriangleView model, const GenerateOptions& options,
+                                     const Progress& progress) {
+  Result<BoxCage> made = make_box_cage(model, box_options(options), progress);
+  if (!made) {
+    return made.error();
   }
-  return PolygonMesh(cage);
+  GeneratedCage result;
+  result.method = Method::boxes;
+  result.faces = std::move(made->faces);
+  result.triangles = std::move(made->cage);
+  result.start_vertices = result.triangles.positions.size();
+  result.bridges = made->boxes.bridges;
+  result.times = std::move(made->times);
+  if (options.quads) {
+    result.quads = report_of(result.faces);
+  }
+  keep_boxes(result, std::move(*made));
+  return result;
+}
+
+std::vector<Remark> remarks_of(const BudgetCage& made, const GenerateOptions& options) {
+  std::vector<Remark> remarks;
+  if (!made.report.reached) {
+    const bool is_gap = options.max_gap > 0 && !(made.gap && *made.gap <= options.max_gap);
+    remarks.push_back(
+        {is_gap ? Reason::gap_not_kept : Reason::budget_not_reached, made.report.why_not, true});
+  }
+  if (made.clearance < made.clearance_asked) {
+    remarks.push_back({Reason::clearance_not_kept,
+                       "the boxes came nearer to the model than the clearance asked for", true});
+  }
+  if (!made.why_not_boxes.empty()) {
+    remarks.push_back({Reason::boxes_not_possible, made.why_not_boxes, true});
+  }
+  if (!made.mirror && !made.why_not_mirrored.empty()) {
+    remarks.push_back(
+        {Reason::not_mirrored, made.why_not_mirrored, options.symmetry != Symmetry::automatic});
+  }
+  if (made.joined > 0) {
+    remarks.push_back({Reason::pieces_joined,
+                       "pieces share a surface where their own would meet, lie one within another, "
+                       "or be too small for the budget",
+                       false});
+  }
+  std::ranges::stable_partition(remarks, &Remark::is_shortfall);
+  return remarks;
+}
+
+Result<GeneratedCage> improved_cage(TriangleView model, const GenerateOptions& options,
+                                    const Progress& progress) {
+  BudgetCageOptions budget;
+  budget.start = options.method == Method::envelope ? CageStart::envelope : CageStart::obb;
+  budget.improve.vertices = vertex_limit(options);
+  budget.improve.faces = options.faces;
+  budget.improve.clearance = options.clearance;
+  budget.improve.rounds = options.rounds;
+  budget.improve.density = options.density;
+  budget.max_gap = options.max_gap;
+  budget.resolution = options.envelope_resolution;
+  budget.closing = options.closing;
+  budget.boxes = box_options(options);
+  budget.symmetry = options.symmetry;
+  budget.quads = options.quads;
+  Result<BudgetCage> made = make_budget_cage(model, budget, progress);
+  if (!made) {
+    return made.error();
+  }
+  GeneratedCage result;
+  result.method = made->boxes ? Method::boxes_improved : Method::envelope;
+  result.remarks = remarks_of(*made, options);
+  result.faces = made->polygons ? std::move(*made->polygons) : PolygonMesh(made->cage);
+  result.triangles = std::move(made->cage);
+  result.start_vertices = made->start_vertices;
+  result.resolution = made->resolution;
+  result.genus = made->genus;
+  result.bridges = made->bridges;
+  result.pieces = made->pieces;
+  result.joined = made->joined;
+  result.objective = made->report.objective;
+  result.clearance = made->clearance;
+  result.gap = made->gap;
+  result.quads = made->quads;
+  result.limb_rings = std::move(made->limb_rings);
+  result.mirror = std::move(made->mirror);
+  result.times = std::move(made->times);
+  if (made->boxes) {
+    keep_boxes(result, std::move(*made->boxes));
+  }
+  return result;
 }
 
 } // namespace
 
-Result<GeneratedCage> generate_cage(TriangleView model, const GenerateOptions& options,
-                                    const Progress& progress) {
-  Result<BoxDecomposition> boxes = decompose(model, options.boxes, progress.part(0, decomposed));
-  if (!boxes) {
-    return boxes.error();
+std::string_view name_of(Reason reason) {
+  switch (reason) {
+  case Reason::budget_not_reached:
+    return "budget_not_reached";
+  case Reason::gap_not_kept:
+    return "gap_not_kept";
+  case Reason::clearance_not_kept:
+    return "clearance_not_kept";
+  case Reason::boxes_not_possible:
+    return "boxes_not_possible";
+  case Reason::not_mirrored:
+    return "not_mirrored";
+  case Reason::pieces_joined:
+    return "pieces_joined";
   }
-  GeneratedCage made;
-  made.boxes = std::move(*boxes);
-  made.leaves = made.boxes.tree.cover();
-  made.times = made.boxes.times;
-  Stopwatch watch(made.times);
+  return "unknown"; // no default above: the compiler points here when a reason is added
+}
 
-  const std::vector<BoxContents> contents = contents_of(made.boxes.tree, made.leaves);
-  made.registration = keep_apart(contents);
-  if (options.registration) {
-    Result<Registration> joined = register_boxes(in_grid_coordinates(made.boxes.grid), contents, {},
-                                                 progress.part(decomposed, registered));
-    if (!joined) {
-      return joined.error();
-    }
-    made.registration = std::move(*joined);
-  }
-  watch.lap("registration");
+bool GeneratedCage::is_as_asked() const {
+  return std::ranges::none_of(remarks, &Remark::is_shortfall);
+}
 
-  Error why;
-  double begin = registered;
-  for (const double separation : separations) {
-    const double end = begin + first_union * (1 - begin); // what is left is for another, if need be
-    Result<TriangleMesh> cage =
-        cage_of(made.registration.solids, separation, made.boxes, model,
-                options.boxes.pieces == Pieces::apart, watch, progress.part(begin, end));
-    begin = end;
-    if (cage) {
-      made.cage = std::move(*cage);
-      made.faces = options.quads
-                       ? with_quads(made.cage, model, options.boxes.pieces == Pieces::apart)
-                       : PolygonMesh(made.cage);
-      if (options.quads) {
-        made.cage = to_triangle_mesh(made.faces);
-        watch.lap("quads");
-      }
-      return made;
-    }
-    why = cage.error();
-    if (why.code != ErrorCode::no_valid_cage) {
-      break;
-    }
-    made.registration = keep_apart(contents); // the simpler the solids, the surer their union
+Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& options,
+                               const Progress& progress) {
+  const Progress making = progress.part(0, made_by);
+  Result<GeneratedCage> made = options.method == Method::boxes
+                                   ? union_of_boxes(model, options, making)
+                                   : improved_cage(model, options, making);
+  if (made) {
+    made->figures = measure_cage(made->faces, model);
+    progress(1, "done");
   }
-  return why;
+  return made;
 }
 
 } // namespace cagewright

@@ -2,16 +2,12 @@
 /// How long each stage of the pipeline took.
 #pragma once
 
+#include <cagewright/cage/generated_cage.h>
+
 #include <chrono>
-#include <string>
 #include <vector>
 
 namespace cagewright {
-
-struct StageTime {
-  std::string stage;
-  double seconds = 0; ///< by the wall clock
-};
 
 /// Notes the time from one lap to the next.
 class Stopwatch {

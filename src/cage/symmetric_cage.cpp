@@ -53,9 +53,9 @@ TriangleMesh with_image(const Task& task) {
 
 Result<TriangleMesh> half_of_boxes(const Task& task, const BudgetCageOptions& options,
                                    BudgetCage& made, const Progress& progress) {
-  GenerateOptions generate = options.boxes;
+  BoxCageOptions generate = options.boxes;
   generate.boxes.clearance = options.improve.clearance;
-  Result<GeneratedCage> boxes = generate_cage(with_image(task), generate, progress);
+  Result<BoxCage> boxes = make_box_cage(with_image(task), generate, progress);
   if (!boxes) {
     return boxes.error();
   }

@@ -7,6 +7,7 @@
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
 #include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/quads/quad_report.h>
 
 #include <span>
 #include <vector>
@@ -40,25 +41,6 @@ inline constexpr double enough_quads = 0.7;
 inline constexpr double few_thin = 0.05;
 /// What the least 2 r / R of its triangles must not fall below for that.
 inline constexpr double needle = 0.03;
-
-struct QuadReport {
-  std::size_t quads = 0;
-  std::size_t triangles = 0;
-  double share = 0;             ///< of quads among the faces
-  double max_bend_degrees = 0;  ///< of all quads: see QuadLimits
-  double max_angle_degrees = 0; ///< at a corner of any quad
-  double min_angle_degrees = 0;
-  /// Strips of quads, each the neighbour of the next across opposite sides, that close on
-  /// themselves.
-  std::size_t rings = 0;
-  /// Closed loops of edges that go straight on at every vertex, four quads meeting there: round
-  /// limbs, and round the body.
-  std::size_t loops = 0;
-  /// Of the triangles that triangulate() makes, the share whose 2 r / R is below 0.15, and the
-  /// least 2 r / R.
-  double thin = 0;
-  double least_quality = 0;
-};
 
 struct Quadrangulated {
   /// Triangles and quads. Cut along any choice of diagonals it is valid, and keeps the clearance.

@@ -9,6 +9,7 @@
 #include "voxel/voxel_grid.h"
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
+#include <cagewright/slicing/slicing_rule.h>
 
 #include <array>
 #include <cstdint>
@@ -17,12 +18,6 @@
 #include <vector>
 
 namespace cagewright {
-
-/// How a box chooses where to cut.
-enum class SlicingRule {
-  volume,    ///< where the boxes of the resulting connected parts have the least volume
-  published, ///< at the greatest jump of the cross-section function (Xian, Lin and Gao 2012)
-};
 
 struct SlicingOptions {
   SlicingRule rule = SlicingRule::volume;

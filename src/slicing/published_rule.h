@@ -5,17 +5,12 @@
 #include "obb/oriented_box.h"
 #include "slicing/cross_section.h"
 #include "slicing/partition.h"
+#include <cagewright/slicing/slicing_rule.h>
 
 #include <array>
 #include <vector>
 
 namespace cagewright {
-
-/// What to do with a box in which no axis has a clear jump of f.
-enum class NoJump {
-  skip,   ///< leave the box whole
-  middle, ///< cut through the middle of its longest edge
-};
 
 struct PublishedRuleOptions {
   double min_jump = 0.15; ///< a jump lower than this fraction of the greatest f is not clear

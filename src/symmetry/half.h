@@ -9,6 +9,7 @@
 #include <cagewright/core/geometry.h>
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/mesh/triangle_mesh.h>
+#include <cagewright/symmetry/mirror_pairing.h>
 
 #include <array>
 #include <optional>
@@ -73,16 +74,6 @@ struct HalfCage {
 /// The part at x >= 0 of a closed surface in the frame, cut by the plane. Of several pieces it is
 /// the one of the greatest volume. None if the plane does not cut the surface.
 std::optional<TriangleMesh> cut_half(TriangleView surface);
-
-/// How the parts of a cage are paired.
-struct MirrorPairing {
-  MirrorPlane plane;
-  std::vector<Index> vertex_partners; ///< of each vertex; on the plane, itself
-  std::vector<Index> face_partners;   ///< of each face
-  /// The greatest distance of a vertex from the mirror image of its partner, in the model's units:
-  /// 0 for planes across one of the world's axes.
-  double error = 0;
-};
 
 template <class Mesh> struct Whole {
   Mesh mesh;

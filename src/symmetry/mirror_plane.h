@@ -5,26 +5,11 @@
 #include <cagewright/core/geometry.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/mesh/triangle_mesh.h>
+#include <cagewright/symmetry/mirror_pairing.h>
 
 #include <optional>
 
 namespace cagewright {
-
-/// The plane normal . x = offset, and how far a model is from being its own mirror image in it.
-struct MirrorPlane {
-  Vec3 normal = Vec3::UnitX(); ///< length one; the component of greatest magnitude is positive
-  double offset = 0;           ///< in the model's units
-  /// Distances of the mirror image of the model's surface to the surface, in diagonals of the
-  /// model's box: the mean over the surface, and what one point in a hundred exceeds.
-  double mean_error = 0;
-  double high_error = 0;
-
-  /// 0, 1 or 2 if the normal is exactly the axis x, y or z; otherwise -1.
-  [[nodiscard]] int axis() const;
-  [[nodiscard]] Vec3 mirrored(const Vec3& p) const {
-    return p - 2 * (normal.dot(p) - offset) * normal;
-  }
-};
 
 struct MirrorOptions {
   /// No plane is found if the best one's errors are above these. A model that is lifted off its

@@ -1,4 +1,4 @@
-#include "cage/generate.h"
+#include "cage/box_cage.h"
 
 #include "core/random.h"
 #include "mesh/shapes.h"
@@ -17,8 +17,8 @@
 namespace cagewright {
 namespace {
 
-GenerateOptions options_at(int depth, SlicingRule rule = SlicingRule::volume) {
-  GenerateOptions options;
+BoxCageOptions options_at(int depth, SlicingRule rule = SlicingRule::volume) {
+  BoxCageOptions options;
   options.boxes.resolution = 32; // coarse, so that the tests are quick
   options.boxes.slicing.depth = depth;
   options.boxes.slicing.rule = rule;
@@ -130,16 +130,16 @@ const std::vector<Model> models = {
      }},
 };
 
-class GenerateCageFor : public testing::TestWithParam<Model> {};
-INSTANTIATE_TEST_SUITE_P(Models, GenerateCageFor, testing::ValuesIn(models),
+class BoxCageFor : public testing::TestWithParam<Model> {};
+INSTANTIATE_TEST_SUITE_P(Models, BoxCageFor, testing::ValuesIn(models),
                          [](const auto& model) { return model.param.name; });
 
-TEST_P(GenerateCageFor, IsValidAtEveryDepthWithBothRules) {
+TEST_P(BoxCageFor, IsValidAtEveryDepthWithBothRules) {
   const TriangleMesh model = GetParam().make();
   for (const SlicingRule rule : {SlicingRule::volume, SlicingRule::published}) {
     for (const int depth : {0, 1, 2, 4, 6}) {
       SCOPED_TRACE(std::string(name_of(rule)) + " depth " + std::to_string(depth));
-      const Result<GeneratedCage> made = generate_cage(model, options_at(depth, rule));
+      const Result<BoxCage> made = make_box_cage(model, options_at(depth, rule));
       ASSERT_TRUE(made) << made.error().message;
       const Result<ValidityReport> report = validate_cage(TriangleView(made->cage), model);
       ASSERT_TRUE(report && report->valid());
@@ -151,16 +151,16 @@ TEST_P(GenerateCageFor, IsValidAtEveryDepthWithBothRules) {
   }
 }
 
-TEST_P(GenerateCageFor, IsTheSameUpToSimilarity) {
+TEST_P(BoxCageFor, IsTheSameUpToSimilarity) {
   const TriangleMesh model = GetParam().make();
-  const Result<GeneratedCage> reference = generate_cage(model, options_at(3));
+  const Result<BoxCage> reference = make_box_cage(model, options_at(3));
   ASSERT_TRUE(reference) << reference.error().message;
   const double diag = diagonal(model.positions);
   const Vec3 away(1e4 * diag, -3e4 * diag, 2e4 * diag);
   for (const auto& [scale, offset] : {std::pair(1e-6, Vec3(0, 0, 0)), std::pair(1e6, Vec3(0, 0, 0)),
                                       std::pair(1.0, away), std::pair(3e-5, Vec3(3e-5 * away))}) {
     SCOPED_TRACE(scale);
-    const Result<GeneratedCage> made = generate_cage(moved(model, scale, offset), options_at(3));
+    const Result<BoxCage> made = make_box_cage(moved(model, scale, offset), options_at(3));
     ASSERT_TRUE(made) << made.error().message;
     ASSERT_EQ(made->cage.triangles, reference->cage.triangles);
     for (std::size_t v = 0; v < made->cage.positions.size(); ++v) {
@@ -170,13 +170,13 @@ TEST_P(GenerateCageFor, IsTheSameUpToSimilarity) {
   }
 }
 
-TEST(GenerateCage, IsTheSameOnAnyNumberOfThreads) {
+TEST(BoxCage, IsTheSameOnAnyNumberOfThreads) {
   const TriangleMesh model =
       joined(make_torus(0.25, 48, 24), moved(make_icosphere(3), 0.5, {1, 0, 0}));
   const auto cage_with = [&](int threads) {
     tbb::task_arena arena(threads);
     return arena.execute([&] {
-      Result<GeneratedCage> made = generate_cage(model, options_at(5));
+      Result<BoxCage> made = make_box_cage(model, options_at(5));
       EXPECT_TRUE(made);
       return made ? std::move(made->cage) : TriangleMesh{};
     });
@@ -189,20 +189,20 @@ TEST(GenerateCage, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-TEST(GenerateCage, JoinsPiecesUnlessAskedNotTo) {
+TEST(BoxCage, JoinsPiecesUnlessAskedNotTo) {
   const TriangleMesh model = joined(make_icosphere(2), moved(make_icosphere(2), 1, {6, 0, 0}));
-  GenerateOptions options = options_at(2);
-  const Result<GeneratedCage> together = generate_cage(model, options);
+  BoxCageOptions options = options_at(2);
+  const Result<BoxCage> together = make_box_cage(model, options);
   ASSERT_TRUE(together) << together.error().message;
   EXPECT_EQ(together->boxes.bridges, 1);
   EXPECT_EQ(topology(TriangleView(together->cage)).components, 1U);
   options.boxes.pieces = Pieces::apart;
-  const Result<GeneratedCage> apart = generate_cage(model, options);
+  const Result<BoxCage> apart = make_box_cage(model, options);
   ASSERT_TRUE(apart) << apart.error().message;
   EXPECT_EQ(topology(TriangleView(apart->cage)).components, 2U);
 }
 
-TEST(GenerateCage, ReportsProgressThatNeverFalls) {
+TEST(BoxCage, ReportsProgressThatNeverFalls) {
   double last = 0;
   bool falls = false;
   std::mutex guard;
@@ -211,13 +211,13 @@ TEST(GenerateCage, ReportsProgressThatNeverFalls) {
     falls = falls || fraction < last;
     last = fraction;
   });
-  ASSERT_TRUE(generate_cage(make_torus(0.25, 48, 24), options_at(4), progress));
+  ASSERT_TRUE(make_box_cage(make_torus(0.25, 48, 24), options_at(4), progress));
   EXPECT_FALSE(falls);
   EXPECT_GT(last, 0.5);
   EXPECT_LE(last, 1);
 }
 
-TEST(GenerateCage, StopsWhereverItIsAskedTo) {
+TEST(BoxCage, StopsWhereverItIsAskedTo) {
   for (const double when : {0.0, 0.2, 0.34, 0.5}) {
     std::stop_source stop;
     const Progress progress(stop.get_token(), [&](double fraction, std::string_view) {
@@ -225,14 +225,13 @@ TEST(GenerateCage, StopsWhereverItIsAskedTo) {
         stop.request_stop();
       }
     });
-    const Result<GeneratedCage> made =
-        generate_cage(make_torus(0.25, 48, 24), options_at(4), progress);
+    const Result<BoxCage> made = make_box_cage(make_torus(0.25, 48, 24), options_at(4), progress);
     ASSERT_FALSE(made) << when;
     EXPECT_EQ(made.error().code, ErrorCode::cancelled);
   }
 }
 
-TEST(GenerateCage, RefusesModelsWithoutExtent) {
+TEST(BoxCage, RefusesModelsWithoutExtent) {
   const std::vector<Triangle> face = {{0, 1, 2}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<TriangleMesh> unfit = {
@@ -245,25 +244,25 @@ TEST(GenerateCage, RefusesModelsWithoutExtent) {
       {{{-1e308, 0, 0}, {1e308, 1e308, 0}, {0, 0, 1e308}}, face},
   };
   for (const TriangleMesh& model : unfit) {
-    const Result<GeneratedCage> made = generate_cage(model);
+    const Result<BoxCage> made = make_box_cage(model);
     ASSERT_FALSE(made);
     EXPECT_EQ(made.error().code, ErrorCode::unfit_model) << made.error().message;
   }
 }
 
-TEST(GenerateCage, RefusesOptionsOutOfRange) {
-  GenerateOptions options;
+TEST(BoxCage, RefusesOptionsOutOfRange) {
+  BoxCageOptions options;
   options.boxes.resolution = 4;
-  EXPECT_EQ(generate_cage(make_cube(), options).error().code, ErrorCode::invalid_option);
+  EXPECT_EQ(make_box_cage(make_cube(), options).error().code, ErrorCode::invalid_option);
   options = {};
   options.boxes.slicing.depth = 99;
-  EXPECT_EQ(generate_cage(make_cube(), options).error().code, ErrorCode::invalid_option);
+  EXPECT_EQ(make_box_cage(make_cube(), options).error().code, ErrorCode::invalid_option);
 }
 
-TEST(GenerateCage, KeepsTheHoleOfATorusOnceItIsCut) {
-  GenerateOptions options = options_at(3);
-  const Result<GeneratedCage> whole = generate_cage(make_torus(0.2, 48, 24), options_at(0));
-  const Result<GeneratedCage> cut = generate_cage(make_torus(0.2, 48, 24), options);
+TEST(BoxCage, KeepsTheHoleOfATorusOnceItIsCut) {
+  BoxCageOptions options = options_at(3);
+  const Result<BoxCage> whole = make_box_cage(make_torus(0.2, 48, 24), options_at(0));
+  const Result<BoxCage> cut = make_box_cage(make_torus(0.2, 48, 24), options);
   ASSERT_TRUE(whole && cut);
   EXPECT_EQ(topology(TriangleView(whole->cage)).genus, 0);
   EXPECT_EQ(topology(TriangleView(cut->cage)).genus, 1);

@@ -1,5 +1,5 @@
 /// \file
-/// The whole pipeline: from a model to a cage that is proved valid.
+/// A cage that is the union of oriented boxes.
 #pragma once
 
 #include "cage/decompose.h"
@@ -14,18 +14,22 @@
 
 namespace cagewright {
 
-struct GenerateOptions {
+struct BoxCageOptions {
   DecomposeOptions boxes = {};
   bool registration = true; ///< join the faces of neighbouring boxes where they fit
   bool quads = false;       ///< make quads of pairs of triangles in one plane
 };
 
-struct GeneratedCage {
+/// How the boxes of a cage were found.
+struct BoxesMade {
+  BoxDecomposition boxes;
+  std::vector<int> leaves;   ///< nodes of the tree whose boxes the cage was made of
+  Registration registration; ///< the solids that were united, in grid coordinates
+};
+
+struct BoxCage : BoxesMade {
   TriangleMesh cage; ///< valid in the sense of validate_cage(), on exactly these coordinates
   PolygonMesh faces; ///< what is written: `cage`, or with quads; valid along either diagonal
-  BoxDecomposition boxes;
-  std::vector<int> leaves;      ///< nodes of the tree whose boxes the cage was made of
-  Registration registration;    ///< the solids that were united, in grid coordinates
   std::vector<StageTime> times; ///< of all stages, those of `boxes` included
 };
 
@@ -34,7 +38,7 @@ struct GeneratedCage {
 ///
 /// Errors: those of decompose(), and no_valid_cage when the result did not pass the check.
 /// Cost: below a second before the union for 100,000 triangles; the union takes 2 to 20 ms a box.
-Result<GeneratedCage> generate_cage(TriangleView model, const GenerateOptions& options = {},
-                                    const Progress& progress = {});
+Result<BoxCage> make_box_cage(TriangleView model, const BoxCageOptions& options = {},
+                              const Progress& progress = {});
 
 } // namespace cagewright

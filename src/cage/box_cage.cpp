@@ -1,0 +1,161 @@
+#include "cage/box_cage.h"
+
+#include "cage/not_valid.h"
+#include "cage/unite.h"
+#include "quads/quads.h"
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
+
+#include <array>
+#include <span>
+#include <utility>
+
+namespace cagewright {
+namespace {
+
+/// Boxes grow by distinct amounts up to these parts of a voxel before they are united, so that no
+/// two of their faces coincide. The second and third, without joints between boxes, are for the
+/// case that the union does not survive the rounding to the model's coordinates.
+constexpr std::array<double, 3> separations = {0.2, 0.17, 0.13};
+
+// Shares of the whole time, for the progress bar.
+constexpr double decomposed = 0.35;
+constexpr double registered = 0.4;
+constexpr double first_union = 0.8; // of what is left: it hardly ever takes another
+
+/// The leaves' boxes and voxels; the voxels stay in the tree.
+std::vector<BoxContents> contents_of(const BoxTree& tree, const std::vector<int>& leaves) {
+  std::vector<BoxContents> contents;
+  contents.reserve(leaves.size());
+  for (const int leaf : leaves) {
+    const BoxNode& node = tree.nodes[static_cast<std::size_t>(leaf)];
+    contents.push_back({node.box, node.voxels});
+  }
+  return contents;
+}
+
+TriangleMesh to_model(const BoxDecomposition& boxes, TriangleMesh cage) {
+  for (Vec3& p : cage.positions) {
+    p = boxes.to_model(p);
+  }
+  return cage;
+}
+
+/// The union of the solids in the model's coordinates, if it is a valid cage there.
+Result<TriangleMesh> cage_of(const std::vector<Hexahedron>& solids, double separation,
+                             const BoxDecomposition& boxes, TriangleView model, bool allow_pieces,
+                             Stopwatch& watch, const Progress& progress) {
+  Result<TriangleMesh> united_solids =
+      unite(solids, {.separation = separation}, progress.part(0, 0.9));
+  watch.lap("union");
+  if (!united_solids) {
+    return united_solids;
+  }
+  TriangleMesh cage = to_model(boxes, std::move(*united_solids));
+  const Result<ValidityReport> report =
+      validate_cage(TriangleView(cage), model, {.allow_pieces = allow_pieces, .max_listed = 1},
+                    progress.part(0.9, 1));
+  watch.lap("check");
+  if (!report) {
+    return report.error();
+  }
+  if (!report->valid()) {
+    return not_valid(*report, "try another resolution or depth");
+  }
+  return cage;
+}
+
+/// Quads that would make the cage invalid along their other diagonal are left as triangles.
+PolygonMesh with_quads(const TriangleMesh& cage, TriangleView model, bool allow_pieces) {
+  PolygonMesh faces = pair_coplanar(cage);
+  constexpr int attempts = 8;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    const Result<ValidityReport> report = validate_cage(
+        faces, model, {.allow_pieces = allow_pieces, .max_listed = faces.face_count()});
+    if (!report) {
+      break;
+    }
+    if (report->valid()) {
+      return faces;
+    }
+    std::vector<char> at_fault(faces.face_count(), 0);
+    for (const Violation& violation : report->violations) {
+      if (violation.kind == ViolationKind::face_contact) {
+        at_fault[violation.elements[1]] = 1;
+      } else if (violation.kind == ViolationKind::self_intersection) {
+        at_fault[violation.elements[0]] = at_fault[violation.elements[1]] = 1;
+      } else if (violation.kind == ViolationKind::degenerate_face) {
+        at_fault[violation.elements[0]] = 1;
+      }
+    }
+    PolygonMesh next;
+    next.positions = faces.positions;
+    for (std::size_t f = 0; f < faces.face_count(); ++f) {
+      const std::span<const Index> face = faces.face(f);
+      if (at_fault[f] != 0 && face.size() == 4) {
+        next.add_face({face[0], face[1], face[2]});
+        next.add_face({face[0], face[2], face[3]});
+      } else {
+        next.add_face(face);
+      }
+    }
+    faces = std::move(next);
+  }
+  return PolygonMesh(cage);
+}
+
+} // namespace
+
+Result<BoxCage> make_box_cage(TriangleView model, const BoxCageOptions& options,
+                              const Progress& progress) {
+  Result<BoxDecomposition> boxes = decompose(model, options.boxes, progress.part(0, decomposed));
+  if (!boxes) {
+    return boxes.error();
+  }
+  BoxCage made;
+  made.boxes = std::move(*boxes);
+  made.leaves = made.boxes.tree.cover();
+  made.times = made.boxes.times;
+  Stopwatch watch(made.times);
+
+  const std::vector<BoxContents> contents = contents_of(made.boxes.tree, made.leaves);
+  made.registration = keep_apart(contents);
+  if (options.registration) {
+    Result<Registration> joined = register_boxes(in_grid_coordinates(made.boxes.grid), contents, {},
+                                                 progress.part(decomposed, registered));
+    if (!joined) {
+      return joined.error();
+    }
+    made.registration = std::move(*joined);
+  }
+  watch.lap("registration");
+
+  Error why;
+  double begin = registered;
+  for (const double separation : separations) {
+    const double end = begin + first_union * (1 - begin); // what is left is for another, if need be
+    Result<TriangleMesh> cage =
+        cage_of(made.registration.solids, separation, made.boxes, model,
+                options.boxes.pieces == Pieces::apart, watch, progress.part(begin, end));
+    begin = end;
+    if (cage) {
+      made.cage = std::move(*cage);
+      made.faces = options.quads
+                       ? with_quads(made.cage, model, options.boxes.pieces == Pieces::apart)
+                       : PolygonMesh(made.cage);
+      if (options.quads) {
+        made.cage = to_triangle_mesh(made.faces);
+        watch.lap("quads");
+      }
+      return made;
+    }
+    why = cage.error();
+    if (why.code != ErrorCode::no_valid_cage) {
+      break;
+    }
+    made.registration = keep_apart(contents); // the simpler the solids, the surer their union
+  }
+  return why;
+}
+
+} // namespace cagewright
