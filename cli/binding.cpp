@@ -1,6 +1,6 @@
 #include "binding.h"
+#include "load.h"
 
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/validate_cage.h>
 
@@ -42,11 +42,11 @@ void add_binding_options(CLI::App& command, BindingOptions& options) {
 }
 
 Result<ModelAndCage> read_model_and_cage(const BindingOptions& options) {
-  Result<PolygonMesh> model = read_mesh(options.model);
+  Result<PolygonMesh> model = load_mesh(options.model);
   if (!model) {
     return model.error();
   }
-  Result<PolygonMesh> cage = read_mesh(options.cage);
+  Result<PolygonMesh> cage = load_mesh(options.cage);
   if (!cage) {
     return cage.error();
   }

@@ -1,18 +1,62 @@
 #include "load.h"
 
 #include <cagewright/io/mesh_format.h>
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/mesh/triangulate.h>
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace cagewright::cli {
+namespace {
+
+// One run of the program is one command, which reads from one thread.
+std::vector<FileNote>& told() {
+  static std::vector<FileNote> notes;
+  return notes;
+}
+
+} // namespace
+
+void tell(std::span<const FileNote> notes) {
+  for (const FileNote& note : notes) {
+    const bool is_new = std::ranges::none_of(
+        told(), [&](const FileNote& other) { return other.message == note.message; });
+    if (is_new) {
+      std::fprintf(stderr, "cagewright: note: %s\n", note.message.c_str());
+      told().push_back(note);
+    }
+  }
+}
+
+nlohmann::json notes_as_json() {
+  nlohmann::json list = nlohmann::json::array();
+  for (const FileNote& note : told()) {
+    list.push_back({{"code", note.code}, {"message", note.message}});
+  }
+  return list;
+}
+
+Result<ModelFile> load_model(const std::string& path) {
+  Result<ModelFile> file = ModelFile::open(path);
+  if (file) {
+    tell(file->notes());
+  }
+  return file;
+}
+
+Result<PolygonMesh> load_mesh(const std::string& path) {
+  Result<ModelFile> file = load_model(path);
+  return file ? Result<PolygonMesh>(std::move(*file).take_mesh()) : file.error();
+}
 
 Result<TriangleMesh> load_triangles(const std::string& path) {
-  const Result<PolygonMesh> mesh = read_mesh(path);
+  const Result<PolygonMesh> mesh = load_mesh(path);
   if (!mesh) {
     return mesh.error();
   }

@@ -3,11 +3,28 @@
 #pragma once
 
 #include <cagewright/core/result.h>
+#include <cagewright/io/model_file.h>
+#include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
+#include <nlohmann/json.hpp>
+
+#include <span>
 #include <string>
 
 namespace cagewright::cli {
+
+/// Says on stderr what was noted while a file was read, a line for each, and keeps it for --json.
+void tell(std::span<const FileNote> notes);
+
+/// All that tell() has said in this run: an array of objects with a code and a message.
+nlohmann::json notes_as_json();
+
+/// Reads a model, and tells what was noted.
+Result<ModelFile> load_model(const std::string& path);
+
+/// The mesh alone.
+Result<PolygonMesh> load_mesh(const std::string& path);
 
 /// Reads a mesh and cuts its faces into triangles.
 Result<TriangleMesh> load_triangles(const std::string& path);

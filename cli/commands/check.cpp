@@ -1,8 +1,8 @@
 #include "cage_figures.h"
+#include "load.h"
 #include "session.h"
 
 #include "io/atomic_file.h"
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/cage_metrics.h>
 #include <cagewright/validate/validate_cage.h>
@@ -147,11 +147,11 @@ void name_model_faces(ValidityReport& report, const Triangulation& model) {
 }
 
 int run(const Options& options, const Session& session) {
-  const auto model = read_mesh(options.model);
+  const auto model = load_mesh(options.model);
   if (!model) {
     return fail(model.error());
   }
-  const auto cage = read_mesh(options.cage);
+  const auto cage = load_mesh(options.cage);
   if (!cage) {
     return fail(cage.error());
   }
@@ -166,6 +166,7 @@ int run(const Options& options, const Session& session) {
   if (!options.json.empty()) {
     nlohmann::json json = to_json(*report);
     json["cage"] = figures_as_json(metrics);
+    json["notes"] = notes_as_json();
     if (const Status status = write_file_atomically(options.json, json.dump(2) + "\n"); !status) {
       return fail(status.error());
     }

@@ -4,7 +4,6 @@
 
 #include "io/atomic_file.h"
 #include <cagewright/deform/standard_poses.h>
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/validate/cage_metrics.h>
 #include <cagewright/validate/model_volume.h>
 #include <cagewright/validate/validate_cage.h>
@@ -43,7 +42,7 @@ struct Compared {
 
 Result<Compared> describe(const std::string& path, TriangleView model, const ModelVolume& volume,
                           bool with_poses, const Progress& progress) {
-  const Result<PolygonMesh> cage = read_mesh(path);
+  const Result<PolygonMesh> cage = load_mesh(path);
   if (!cage) {
     return cage.error();
   }
@@ -203,6 +202,7 @@ int run(const Options& options, const Session& session) {
     nlohmann::json json = {{"format", "cagewright-compare"},
                            {"version", 1},
                            {"model", options.model},
+                           {"notes", notes_as_json()},
                            {"cages", nlohmann::json::array()}};
     for (const Compared& cage : cages) {
       json["cages"].push_back(as_json(cage));

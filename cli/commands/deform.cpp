@@ -1,4 +1,5 @@
 #include "binding.h"
+#include "load.h"
 #include "session.h"
 
 #include "deform/apply.h"
@@ -7,7 +8,6 @@
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
 #include <cagewright/io/mesh_format.h>
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/io/rewrite_positions.h>
 #include <cagewright/mesh/measures.h>
 
@@ -107,7 +107,7 @@ Result<std::vector<std::vector<Vec3>>> read_poses(const std::vector<Pose>& poses
                                                   const PolygonMesh& rest) {
   std::vector<std::vector<Vec3>> positions;
   for (const Pose& pose : poses) {
-    Result<PolygonMesh> cage = read_mesh(pose.path);
+    Result<PolygonMesh> cage = load_mesh(pose.path);
     if (!cage) {
       return cage.error();
     }

@@ -1,4 +1,5 @@
 #include "json.h"
+#include "load.h"
 #include "plane_text.h"
 #include "session.h"
 
@@ -11,7 +12,6 @@
 #include "validate/self_crossings.h"
 #include "voxel/point_set.h"
 #include "voxel/voxelize.h"
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/mesh/weld.h>
@@ -252,7 +252,7 @@ nlohmann::json to_json(const Info& info) {
 }
 
 int run(const Options& options, const Session& session) {
-  const auto model = read_mesh(options.model);
+  const auto model = load_mesh(options.model);
   if (!model) {
     return fail(model.error());
   }
@@ -261,7 +261,9 @@ int run(const Options& options, const Session& session) {
     return fail(info.error());
   }
   if (!options.json.empty()) {
-    const std::string json = to_json(*info).dump(2) + "\n";
+    nlohmann::json figures = to_json(*info);
+    figures["notes"] = notes_as_json();
+    const std::string json = figures.dump(2) + "\n";
     if (const Status status = write_file_atomically(options.json, json); !status) {
       return fail(status.error());
     }

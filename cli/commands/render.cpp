@@ -1,6 +1,6 @@
+#include "load.h"
 #include "session.h"
 
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/render/render.h>
 
 #include <fmt/format.h>
@@ -88,7 +88,7 @@ Result<Image> draw(RenderCommand& command) {
     return size.error();
   }
   Scene scene;
-  const Result<PolygonMesh> model = read_mesh(command.model);
+  const Result<PolygonMesh> model = load_mesh(command.model);
   if (!model) {
     return model.error();
   }
@@ -97,7 +97,7 @@ Result<Image> draw(RenderCommand& command) {
 
   std::optional<PolygonMesh> cage;
   if (!command.cage.empty()) {
-    Result<PolygonMesh> read = read_mesh(command.cage);
+    Result<PolygonMesh> read = load_mesh(command.cage);
     if (!read) {
       return read.error();
     }

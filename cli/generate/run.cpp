@@ -7,7 +7,6 @@
 #include "cage/hexahedron.h"
 #include "io/atomic_file.h"
 #include "voxel/voxel_mesh.h"
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/cage_metrics.h>
@@ -55,7 +54,9 @@ PolygonMesh voxel_objects(const BoxDecomposition& boxes) {
 Status write_outputs(const GenerateArguments& arguments, const PolygonMesh& mesh,
                      const nlohmann::json& description) {
   if (!arguments.json.empty()) {
-    const Status written = write_file_atomically(arguments.json, description.dump(1) + "\n");
+    nlohmann::json all = description;
+    all["notes"] = notes_as_json();
+    const Status written = write_file_atomically(arguments.json, all.dump(1) + "\n");
     if (!written) {
       return written;
     }
@@ -127,7 +128,7 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
   if (const Status writable = can_write_mesh(arguments.output); !writable) {
     return fail(writable.error());
   }
-  const Result<PolygonMesh> mesh = read_mesh(arguments.model);
+  const Result<PolygonMesh> mesh = load_mesh(arguments.model);
   if (!mesh) {
     return fail(mesh.error());
   }

@@ -4,6 +4,7 @@
 
 #include <cagewright/core/result.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -15,6 +16,9 @@ namespace cagewright {
 class FileBytes {
 public:
   FileBytes(std::unique_ptr<char[]> data, std::size_t size) : data_(std::move(data)), size_(size) {}
+  explicit FileBytes(std::string_view bytes) : data_(new char[bytes.size()]), size_(bytes.size()) {
+    std::copy(bytes.begin(), bytes.end(), data_.get());
+  }
 
   [[nodiscard]] std::string_view view() const { return {data_.get(), size_}; }
 

@@ -402,7 +402,9 @@ Result<GltfScene> read_gltf_scene(GltfDocument& document) {
 }
 
 Result<PolygonMesh> read_gltf(const Source& source,
-                              const std::optional<std::filesystem::path>& folder) {
+                              const std::optional<std::filesystem::path>& folder,
+                              Reading& reading) {
+  static_cast<void>(reading);
   Result<GltfDocument> document = GltfDocument::open(source, folder);
   if (!document) {
     return document.error();

@@ -1,6 +1,6 @@
+#include <cagewright/io/model_file.h>
 #include <cagewright/io/read_mesh.h>
 
-#include "io/read_file.h"
 #include "io/readers.h"
 #include "io/source.h"
 
@@ -25,9 +25,9 @@ constexpr Foreign foreign_files[] = {
     {"; FBX", "an FBX file", "export the model as OBJ or GLB"},
     {"BLENDER", "a Blender file", "export the model as OBJ or GLB"},
     {"<?xml", "an XML file", "export the model as OBJ or GLB"},
-    {"\xff\xfe", "a text in UTF-16", "save it as UTF-8"},
-    {"\xfe\xff", "a text in UTF-16", "save it as UTF-8"},
 };
+
+} // namespace
 
 std::optional<Error> foreign_file(const Source& source) {
   for (const Foreign& kind : foreign_files) {
@@ -39,9 +39,13 @@ std::optional<Error> foreign_file(const Source& source) {
   return std::nullopt;
 }
 
+namespace {
+
 Error is_empty(const Source& source) {
   return source.error("the file is empty" + std::string(export_again));
 }
+
+} // namespace
 
 Error unknown_format(const Source& source) {
   return source.error("is no mesh in a known format; use OBJ, PLY, STL, OFF, GLB or glTF",
@@ -49,22 +53,22 @@ Error unknown_format(const Source& source) {
 }
 
 Result<PolygonMesh> read_as(MeshFormat format, const Source& source,
-                            const std::optional<std::filesystem::path>& folder) {
+                            const std::optional<std::filesystem::path>& folder, Reading& reading) {
   if (source.bytes.empty()) {
     return is_empty(source);
   }
   try {
     switch (format) {
     case MeshFormat::obj:
-      return read_obj(source);
+      return read_obj(source, reading);
     case MeshFormat::off:
-      return read_off(source);
+      return read_off(source, reading);
     case MeshFormat::ply:
-      return read_ply(source);
+      return read_ply(source, reading);
     case MeshFormat::stl:
-      return read_stl(source);
+      return read_stl(source, reading);
     case MeshFormat::gltf:
-      return read_gltf(source, folder);
+      return read_gltf(source, folder, reading);
     }
   } catch (const std::bad_alloc&) {
     return source.error("there is not enough memory for the mesh; simplify the model",
@@ -72,8 +76,6 @@ Result<PolygonMesh> read_as(MeshFormat format, const Source& source,
   }
   return unknown_format(source); // only for a value outside the enumeration
 }
-
-} // namespace
 
 void normalize_colors(PolygonMesh& mesh) {
   float largest = 0;
@@ -91,27 +93,13 @@ void normalize_colors(PolygonMesh& mesh) {
 }
 
 Result<PolygonMesh> read_mesh(std::string_view bytes, MeshFormat format, std::string_view name) {
-  return read_as(format, Source{name, bytes}, {});
+  Reading reading;
+  return read_as(format, Source{name, bytes}, {}, reading);
 }
 
 Result<PolygonMesh> read_mesh(const std::filesystem::path& path) {
-  const Result<FileBytes> file = read_file(path);
-  if (!file) {
-    return file.error();
-  }
-  const std::string name = path.string();
-  const Source source{name, file->view()};
-  if (source.bytes.empty()) {
-    return is_empty(source);
-  }
-  std::optional<MeshFormat> format = format_of_content(source.bytes);
-  if (!format) {
-    if (const std::optional<Error> error = foreign_file(source)) {
-      return *error;
-    }
-    format = format_of_name(path);
-  }
-  return format ? read_as(*format, source, path.parent_path()) : unknown_format(source);
+  Result<ModelFile> file = ModelFile::open(path);
+  return file ? Result<PolygonMesh>(std::move(*file).take_mesh()) : file.error();
 }
 
 } // namespace cagewright

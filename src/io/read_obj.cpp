@@ -268,14 +268,8 @@ private:
 
 } // namespace
 
-Result<PolygonMesh> read_obj(const Source& source) {
-  return ObjReader(source).read();
-}
-
-Result<FileNormals> read_obj_normals(const Source& source) {
-  FileNormals normals;
-  const Result<PolygonMesh> mesh = ObjReader(source, &normals).read();
-  return mesh ? Result<FileNormals>(std::move(normals)) : mesh.error();
+Result<PolygonMesh> read_obj(const Source& source, Reading& reading) {
+  return ObjReader(source, reading.normals).read();
 }
 
 } // namespace cagewright

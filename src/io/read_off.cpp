@@ -311,7 +311,8 @@ private:
 
 } // namespace
 
-Result<PolygonMesh> read_off(const Source& source) {
+Result<PolygonMesh> read_off(const Source& source, Reading& reading) {
+  static_cast<void>(reading);
   TextCursor cursor(source);
   cursor.next_word_of_file();
   const std::optional<OffHeader> header = off_header(cursor.peek_word());

@@ -292,7 +292,8 @@ private:
 
 } // namespace
 
-Result<PolygonMesh> read_ply(const Source& source) {
+Result<PolygonMesh> read_ply(const Source& source, Reading& reading) {
+  static_cast<void>(reading);
   const Result<PlyHeader> header = read_ply_header(source);
   if (!header) {
     return header.error();

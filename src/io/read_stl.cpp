@@ -153,7 +153,8 @@ bool is_stl_text(const Source& source) {
          source.bytes.substr(0, 1024).find('\0') == std::string_view::npos;
 }
 
-Result<PolygonMesh> read_stl(const Source& source) {
+Result<PolygonMesh> read_stl(const Source& source, Reading& reading) {
+  static_cast<void>(reading);
   return is_stl_text(source) ? StlTextReader(source).read() : read_binary(source);
 }
 

@@ -5,14 +5,13 @@
 #include "io/number_text.h"
 #include "io/off_header.h"
 #include "io/ply_values.h"
-#include "io/read_file.h"
 #include "io/readers.h"
 #include "io/rewrite_gltf.h"
 #include "io/rewrite_obj.h"
 #include "io/text_copy.h"
 #include "io/text_cursor.h"
 #include <cagewright/io/mesh_format.h>
-#include <cagewright/io/read_mesh.h>
+#include <cagewright/io/model_file.h>
 #include <cagewright/io/write_mesh.h>
 
 #include <algorithm>
@@ -339,8 +338,8 @@ Result<std::string> rewrite_ply(const Source& source, const Geometry& geometry) 
                             geometry);
 }
 
-Result<std::string> rewrite_as(MeshFormat format, const Source& source, const Geometry& geometry,
-                               const FileNormals& stored) {
+Result<std::string> rewritten_as(MeshFormat format, const Source& source, const Geometry& geometry,
+                                 const FileNormals& stored) {
   switch (format) {
   case MeshFormat::obj:
     return rewrite_obj(source, geometry.positions, geometry.normals, stored);
@@ -356,11 +355,6 @@ Result<std::string> rewrite_as(MeshFormat format, const Source& source, const Ge
   }
   return source.error("is glTF, which rewrite_gltf() writes",
                       ErrorCode::unsupported); // not reached
-}
-
-// What the file is, by the rule of read_mesh(), which has accepted it.
-MeshFormat format_of(const Source& source, const std::filesystem::path& path) {
-  return format_of_content(source.bytes).value_or(format_of_name(path).value_or(MeshFormat::obj));
 }
 
 Status check_count(const Source& source, std::string_view noun, std::size_t in_file,
@@ -383,7 +377,8 @@ Result<FileNormals> vertex_normals_in(const Source& source, MeshFormat format) {
   if (format != MeshFormat::ply && format != MeshFormat::off) {
     return result;
   }
-  const Result<PolygonMesh> mesh = read_mesh(source.bytes, format, source.name);
+  Reading reading;
+  const Result<PolygonMesh> mesh = read_as(format, source, {}, reading);
   if (!mesh) {
     return mesh.error();
   }
@@ -396,9 +391,23 @@ Result<FileNormals> vertex_normals_in(const Source& source, MeshFormat format) {
   return result;
 }
 
-Result<FileNormals> normals_in(const Source& source, MeshFormat format) {
+Result<FileNormals> obj_normals_in(const Source& source) {
+  FileNormals normals;
+  Reading reading;
+  reading.normals = &normals;
+  const Result<PolygonMesh> mesh = read_obj(source, reading);
+  return mesh ? Result<FileNormals>(std::move(normals)) : mesh.error();
+}
+
+} // namespace
+
+Result<FileNormals> normals_in(const Source& source, MeshFormat format,
+                               const std::optional<std::filesystem::path>& folder) {
+  if (format == MeshFormat::gltf) {
+    return read_gltf_normals(source, folder);
+  }
   Result<FileNormals> result =
-      format == MeshFormat::obj ? read_obj_normals(source) : vertex_normals_in(source, format);
+      format == MeshFormat::obj ? obj_normals_in(source) : vertex_normals_in(source, format);
   if (result) {
     const auto is_wrong = [](const Vec3& normal) { return !normal.allFinite(); };
     std::ranges::replace_if(result->normals, is_wrong, Vec3(Vec3::Zero()));
@@ -406,48 +415,24 @@ Result<FileNormals> normals_in(const Source& source, MeshFormat format) {
   return result;
 }
 
-} // namespace
-
-Result<FileNormals> read_normals(const std::filesystem::path& path) {
-  const Result<FileBytes> file = read_file(path);
-  if (!file) {
-    return file.error();
-  }
-  const std::string name = path.string();
-  const Source source{name, file->view()};
-  const MeshFormat format = format_of(source, path);
-  return format == MeshFormat::gltf ? read_gltf_normals(source, path.parent_path())
-                                    : normals_in(source, format);
-}
-
-Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
-                         std::span<const Vec3> normals, const std::filesystem::path& out) {
-  const Result<FileBytes> file = read_file(original);
-  if (!file) {
-    return file.error();
-  }
-  const std::string name = original.string();
-  const Source source{name, file->view()};
-  const MeshFormat format = format_of(source, original);
+Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& mesh,
+                  const std::filesystem::path& folder, std::span<const Vec3> positions,
+                  std::span<const Vec3> normals, const std::filesystem::path& out) {
   if (!all_finite(positions) || !all_finite(normals)) {
     return Error{ErrorCode::cannot_write, one_line(out.string()) +
                                               ": a position or normal is not finite; check where "
                                               "it was computed"};
   }
   if (format == MeshFormat::gltf) {
-    return rewrite_gltf(source, original.parent_path(), positions, normals, out);
+    return rewrite_gltf(source, folder, positions, normals, out);
   }
-  const Result<PolygonMesh> mesh = read_mesh(source.bytes, format, name);
-  if (!mesh) {
-    return mesh.error();
-  }
-  const Status vertices = check_count(source, "vertex", mesh->positions.size(), positions.size());
+  const Status vertices = check_count(source, "vertex", mesh.positions.size(), positions.size());
   if (!vertices) {
     return vertices;
   }
   FileNormals stored;
   if (!normals.empty()) {
-    Result<FileNormals> found = normals_in(source, format);
+    Result<FileNormals> found = normals_in(source, format, folder);
     if (!found) {
       return found.error();
     }
@@ -457,8 +442,19 @@ Status rewrite_positions(const std::filesystem::path& original, std::span<const 
       return same;
     }
   }
-  const Result<std::string> bytes = rewrite_as(format, source, {positions, normals}, stored);
+  const Result<std::string> bytes = rewritten_as(format, source, {positions, normals}, stored);
   return bytes ? write_file_atomically(out, *bytes) : bytes.error();
+}
+
+Result<FileNormals> read_normals(const std::filesystem::path& path) {
+  const Result<ModelFile> file = ModelFile::open(path);
+  return file ? file->normals() : file.error();
+}
+
+Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
+                         std::span<const Vec3> normals, const std::filesystem::path& out) {
+  const Result<ModelFile> file = ModelFile::open(original);
+  return file ? file->rewrite(positions, normals, out) : file.error();
 }
 
 Status write_moved(const std::filesystem::path& original, const PolygonMesh& mesh,

@@ -34,12 +34,18 @@ Error Source::error(std::string_view what, ErrorCode code) const {
   return {code, one_line(name) + ": " + std::string(what)};
 }
 
-Error Source::error_in_line(std::size_t offset, std::string_view what, ErrorCode code) const {
-  // Line ends are \n or \r\n, or on old Macintoshes \r alone.
-  const char line_end = bytes.find('\n') != bytes.npos ? '\n' : '\r';
+std::string Source::place_in_line(std::size_t offset) const {
+  // Line ends are \n or \r\n, or on old Macintoshes \r alone; some files mix them.
+  std::size_t line = 1;
   const std::string_view before = bytes.substr(0, offset);
-  const auto line = 1 + std::count(before.begin(), before.end(), line_end);
-  return {code, one_line(name) + ':' + std::to_string(line) + ": " + std::string(what)};
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    line += before[i] == '\n' || (before[i] == '\r' && bytes.substr(i + 1, 1) != "\n") ? 1 : 0;
+  }
+  return one_line(name) + ':' + std::to_string(line);
+}
+
+Error Source::error_in_line(std::size_t offset, std::string_view what, ErrorCode code) const {
+  return {code, place_in_line(offset) + ": " + std::string(what)};
 }
 
 Error Source::error_at_byte(std::size_t offset, std::string_view what, ErrorCode code) const {

@@ -33,6 +33,9 @@ struct Source {
   [[nodiscard]] Error error_in_line(std::size_t offset, std::string_view what,
                                     ErrorCode code = ErrorCode::malformed) const;
 
+  /// "name:line", for the line that holds `offset` in a text file.
+  [[nodiscard]] std::string place_in_line(std::size_t offset) const;
+
   /// "name: byte offset: what", for a binary file.
   [[nodiscard]] Error error_at_byte(std::size_t offset, std::string_view what,
                                     ErrorCode code = ErrorCode::malformed) const;

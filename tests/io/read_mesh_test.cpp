@@ -1,3 +1,4 @@
+#include <cagewright/io/model_file.h>
 #include <cagewright/io/read_mesh.h>
 
 #include "io/files.h"
@@ -85,8 +86,6 @@ TEST(ReadMesh, NamesFilesOfOtherKinds) {
   EXPECT_EQ(message("a.obj", "PK\x03\x04"), "is a zip archive; unpack it first");
   EXPECT_EQ(message("a.fbx", "Kaydara FBX Binary"),
             "is an FBX file; export the model as OBJ or GLB");
-  EXPECT_EQ(message("a.obj", std::string_view("\xff\xfev\0 \0", 6)),
-            "is a text in UTF-16; save it as UTF-8");
   EXPECT_EQ(message("a.txt", "once upon a time"),
             "is no mesh in a known format; use OBJ, PLY, STL, OFF, GLB or glTF");
   EXPECT_EQ(message("a.txt", ""), "the file is empty; export the model again");
@@ -139,6 +138,29 @@ TEST(ReadMesh, ShowsARiggedFigureUpright) {
   EXPECT_GT(box.sizes().y(), box.sizes().x()); // glTF's y is up: a figure is taller than wide
   EXPECT_GT(box.sizes().y(), 2 * box.sizes().z());
   EXPECT_GT(box.center().y(), 0.5); // and stands on the ground
+}
+
+std::string in_utf16(std::string_view text, bool little) {
+  std::string bytes = little ? "\xff\xfe" : "\xfe\xff";
+  for (const char c : text) {
+    bytes.append(little ? std::string{c, '\0'} : std::string{'\0', c});
+  }
+  return bytes;
+}
+
+TEST(ReadMesh, ReadsTextInUtf16AndSaysSo) {
+  for (const bool little : {true, false}) {
+    const TemporaryFolder folder;
+    const Result<ModelFile> file = ModelFile::open(
+        folder.add("a.obj", in_utf16("v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n", little)));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->mesh().positions[2], Vec3(0, 1, 0));
+    ASSERT_EQ(file->notes().size(), 1U);
+    EXPECT_EQ(file->notes()[0].code, "utf16");
+    const std::vector<Vec3> moved = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    ASSERT_TRUE(file->rewrite(moved, {}, folder / "b.obj"));
+    EXPECT_EQ(test::bytes_of(folder / "b.obj"), "v 0 0 1\r\nv 1 0 1\r\nv 0 1 1\r\nf 1 2 3\r\n");
+  }
 }
 
 } // namespace

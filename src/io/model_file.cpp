@@ -1,0 +1,107 @@
+#include <cagewright/io/model_file.h>
+
+#include "io/read_file.h"
+#include "io/readers.h"
+#include "io/utf16.h"
+#include <cagewright/io/write_mesh.h>
+
+#include <optional>
+
+namespace cagewright {
+namespace {
+
+std::optional<std::filesystem::path> folder_of(const std::filesystem::path& path, bool on_disk) {
+  return on_disk ? std::optional(path.parent_path()) : std::nullopt;
+}
+
+} // namespace
+
+Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
+  Result<FileBytes> bytes = read_file(path);
+  if (!bytes) {
+    return bytes.error();
+  }
+  ModelFile file;
+  file.path_ = path;
+  file.name_ = path.string();
+  file.on_disk_ = true;
+  file.hold(std::move(*bytes));
+  const Source source{file.name_, file.bytes_->view()};
+  std::optional<MeshFormat> format = format_of_content(source.bytes);
+  if (!format) {
+    if (const std::optional<Error> error = foreign_file(source)) {
+      return *error;
+    }
+    format = format_of_name(path);
+  }
+  if (!format && !source.bytes.empty()) {
+    return unknown_format(source);
+  }
+  file.format_ = format.value_or(MeshFormat::obj);
+  return read(std::move(file));
+}
+
+Result<ModelFile> ModelFile::parse(std::string bytes, MeshFormat format, std::string_view name) {
+  ModelFile file;
+  file.path_ = name;
+  file.name_ = name;
+  file.format_ = format;
+  file.hold(FileBytes(bytes));
+  return read(std::move(file));
+}
+
+void ModelFile::hold(FileBytes bytes) {
+  if (const std::optional<std::string> text = text_from_utf16(bytes.view())) {
+    bytes = FileBytes(*text);
+    notes_.push_back({"utf16", one_line(name_) + ": is text in UTF-16; read as such"});
+  }
+  bytes_ = std::make_shared<const FileBytes>(std::move(bytes));
+}
+
+Result<ModelFile> ModelFile::read(ModelFile file) {
+  Reading reading;
+  Result<PolygonMesh> mesh = read_as(file.format_, Source{file.name_, file.bytes_->view()},
+                                     folder_of(file.path_, file.on_disk_), reading);
+  if (!mesh) {
+    return mesh.error();
+  }
+  file.mesh_ = std::move(*mesh);
+  for (FileNote& note : reading.notes.take()) {
+    file.notes_.push_back(std::move(note));
+  }
+  return file;
+}
+
+Result<FileNormals> ModelFile::normals() const {
+  return normals_in({name_, bytes_->view()}, format_, folder_of(path_, on_disk_));
+}
+
+Result<MeshAttributes> ModelFile::attributes() const {
+  MeshAttributes attributes;
+  Reading reading;
+  reading.attributes = &attributes;
+  const Result<PolygonMesh> mesh =
+      read_as(format_, {name_, bytes_->view()}, folder_of(path_, on_disk_), reading);
+  return mesh ? Result<MeshAttributes>(std::move(attributes)) : mesh.error();
+}
+
+Status ModelFile::rewrite(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                          const std::filesystem::path& out) const {
+  return rewrite_as(format_, {name_, bytes_->view()}, mesh_, path_.parent_path(), positions,
+                    normals, out);
+}
+
+Result<std::vector<FileNote>> ModelFile::write_moved(std::span<const Vec3> positions,
+                                                     std::span<const Vec3> normals,
+                                                     const std::filesystem::path& out) const {
+  if (format_of_name(out) == format_of_name(path_)) {
+    const Status written = rewrite(positions, normals, out);
+    return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
+  }
+  PolygonMesh moved = mesh_;
+  moved.positions.assign(positions.begin(), positions.end());
+  const Status written = write_mesh(moved, out);
+  return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
+}
+
+} // namespace cagewright

@@ -1,0 +1,94 @@
+"""Files as people really have them, and what the program makes of each.
+
+Called as: field_test.py PROGRAM FOLDER [ID...]
+
+FOLDER holds the field cases (base.obj, cage.obj, posed.obj, F01_end_loop.stl, ...), which are no part of the
+repository; without it nothing is tested, and the exit code is 77 (skipped). Each row of CASES is (id, command,
+expectation): the command without the program's name, in which files of FOLDER stand by name and outputs go to a folder
+of their own as out/NAME; the expectation is a dictionary of
+
+    code    the exit code (0 unless given)
+    out     texts that stdout contains, in any order
+    err     texts that stderr contains
+    not_err texts that stderr does not contain
+    file    {"out/NAME": [texts that the file contains]}
+    check   a function of the folder of outputs that returns what is wrong, or nothing
+
+Rows are independent of one another. Every row stands for a kind of file; more of each kind are in the tests of the
+readers.
+"""
+
+import pathlib
+import shlex
+import subprocess
+import sys
+import tempfile
+
+POSE = "cage.obj posed.obj"
+
+# Reading and writing OBJ, STL, PLY and OFF.
+READERS = [
+    ("F08", "info F08_trailing_slashes.obj", {"out": ["1280 triangles", "closed"]}),
+    ("F34", "info F34_lines_only.obj", {"code": 2, "err": ["F34_lines_only.obj", "has no faces"]}),
+    ("F37", "info F37_points_only.ply", {"code": 2, "err": ["F37_points_only.ply", "has no faces"]}),
+]
+
+# glTF.
+GLTF = [
+    ("F13b", "info F13_gltf_buffer.gltf", {"out": ["1280 triangles"]}),
+]
+
+# Commands, cages from elsewhere, exit codes.
+COMMANDS = [
+    ("F61", "check base.obj F61_cage_touching.obj", {"code": 1, "out": ["not valid"]}),
+]
+
+CASES = READERS + GLTF + COMMANDS
+
+
+def wrong_with(program, folder, command, expected):
+    """What is wrong with a row, as a list of sentences."""
+    with tempfile.TemporaryDirectory() as temporary:
+        outputs = pathlib.Path(temporary, "out")
+        outputs.mkdir()
+        words = [str(outputs / w[4:]) if w.startswith("out/") else str(folder / w) if (folder / w).exists() else w
+                 for w in shlex.split(command)]
+        ran = subprocess.run([program, *words], capture_output=True, text=True, errors="replace", timeout=300,
+                             check=False)
+        wrong = []
+        if ran.returncode != expected.get("code", 0):
+            wrong.append(f"exit code {ran.returncode}, not {expected.get('code', 0)}; stderr: {ran.stderr.strip()}")
+        for key, text in (("out", ran.stdout), ("err", ran.stderr)):
+            wrong += [f"std{key} lacks {part!r}: {text.strip()!r}" for part in expected.get(key, []) if part not in text]
+        wrong += [f"stderr says {part!r}" for part in expected.get("not_err", []) if part in ran.stderr]
+        for name, parts in expected.get("file", {}).items():
+            path = outputs / name[4:]
+            text = path.read_text(errors="replace") if path.exists() else ""
+            wrong += [f"{name} lacks {part!r}" for part in parts if part not in text]
+        if not wrong and "check" in expected:
+            found = expected["check"](outputs)
+            wrong += [found] if found else []
+        return wrong
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    folder = pathlib.Path(sys.argv[2])
+    chosen = set(sys.argv[3:])
+    if not (folder / "base.obj").exists():
+        print(f"skipped: there are no field cases in {folder}")
+        return 77
+    failed = 0
+    for name, command, expected in CASES:
+        if chosen and name not in chosen:
+            continue
+        wrong = wrong_with(program, folder, command, expected)
+        failed += bool(wrong)
+        for sentence in wrong:
+            print(f"{name}: cagewright {command}: {sentence}")
+    print(f"{failed} of {len(CASES)} field cases fail")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
