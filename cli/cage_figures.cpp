@@ -14,6 +14,7 @@ nlohmann::json figures_as_json(const CageMetrics& metrics) {
           {"clearance", metrics.clearance},
           {"mean_distance", metrics.mean_distance},
           {"max_distance", metrics.max_distance},
+          {"webbing", metrics.webbing},
           {"min_quality", metrics.min_quality},
           {"low_quality", metrics.low_quality},
           {"max_valence", metrics.max_valence},
@@ -33,6 +34,9 @@ std::string figures_as_text(const CageMetrics& metrics) {
                         100 * metrics.clearance, 100 * metrics.mean_distance,
                         100 * metrics.max_distance);
   }
+  text +=
+      fmt::format("  webbing: {:.1f} % of the free space between parts that are near each other\n",
+                  100 * metrics.webbing);
   text += fmt::format("  triangle quality: least {:.3f}, 5th percentile {:.3f}; least dihedral "
                       "angle {:.1f} degrees; greatest valence {}\n",
                       metrics.min_quality, metrics.low_quality, metrics.min_dihedral,

@@ -106,6 +106,8 @@ const std::vector<Row>& rows() {
       {"least gap %", [](const Compared& c) { return percent(c.metrics.clearance); }},
       {"mean gap %", [](const Compared& c) { return percent(c.metrics.mean_distance); }},
       {"greatest gap %", [](const Compared& c) { return percent(c.metrics.max_distance); }},
+      {"webbing %",
+       [](const Compared& c) { return fmt::format("{:.1f}", 100 * c.metrics.webbing); }},
       {"2r/R least",
        [](const Compared& c) { return fmt::format("{:.3f}", c.metrics.min_quality); }},
       {"2r/R 5th percentile",

@@ -4,6 +4,7 @@
 #include "spatial/bvh.h"
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/webbing.h>
 
 #include <algorithm>
 #include <array>
@@ -155,6 +156,7 @@ CageMetrics measure_cage(TriangleView cage, TriangleView model,
   metrics.model_volume_method = volume.method;
   metrics.volume_ratio = volume.value > 0 ? metrics.volume / volume.value : 0;
   measure_distances(cage, model, metrics);
+  metrics.webbing = SpaceBetween(model).share_inside(cage);
   measure_shapes(cage, metrics);
   metrics.min_dihedral = min_dihedral(cage);
   return metrics;

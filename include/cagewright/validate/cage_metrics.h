@@ -20,10 +20,13 @@ struct CageMetrics {
   double volume = 0; ///< signed: of a closed cage oriented outward, positive
   double model_volume = 0;
   VolumeMethod model_volume_method = VolumeMethod::none;
-  double volume_ratio = 0;     ///< volume / model_volume; 0 when the model has no volume
-  double clearance = 0;        ///< least distance between the two surfaces; 0 where they cross
-  double mean_distance = 0;    ///< from points of the cage to the model's nearest
-  double max_distance = 0;     ///< the same, the greatest; the cage's vertices are among the points
+  double volume_ratio = 0;  ///< volume / model_volume; 0 when the model has no volume
+  double clearance = 0;     ///< least distance between the two surfaces; 0 where they cross
+  double mean_distance = 0; ///< from points of the cage to the model's nearest
+  double max_distance = 0;  ///< the same, the greatest; the cage's vertices are among the points
+  /// Of the free space between parts of the model that are near each other and far apart along its
+  /// surface, the share inside the cage: see SpaceBetween. 0: nothing is joined, or there is none.
+  double webbing = 0;
   double min_quality = 0;      ///< least 2 r / R of a cage triangle: 1 equilateral, 0 degenerate
   double low_quality = 0;      ///< 5th percentile of the same
   std::size_t max_valence = 0; ///< most faces at one vertex

@@ -1,0 +1,128 @@
+#include <cagewright/validate/webbing.h>
+
+#include "mesh/shapes.h"
+#include <cagewright/mesh/measures.h>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace cagewright {
+namespace {
+
+/// From corner to corner.
+TriangleMesh bar(const Vec3& low, const Vec3& high) {
+  TriangleMesh mesh = make_cube(); // from -1 to 1
+  for (Vec3& p : mesh.positions) {
+    p = (low + high) / 2 + p.cwiseProduct(high - low) / 2;
+  }
+  return mesh;
+}
+
+/// Two legs, a tenth of the diagonal apart, and what joins them at the top.
+TriangleMesh trousers() {
+  return joined(joined(bar({-3, 0, 0}, {-1, 2, 16}), bar({1, 0, 0}, {3, 2, 16})),
+                bar({-3, 0, 14}, {3, 2, 18}));
+}
+
+TEST(SpaceBetween, IsBetweenTheLegs) {
+  const SpaceBetween space(trousers());
+  ASSERT_GT(space.count(), 100U);
+  for (const Vec3& p : space.points()) {
+    EXPECT_LT(std::abs(p.x()), 1);
+    EXPECT_GT(p.z(), -0.5);
+    EXPECT_LT(p.z(), 14);
+  }
+}
+
+TEST(SpaceBetween, KnowsWhatIsJoined) {
+  const SpaceBetween space(trousers());
+  EXPECT_EQ(space.share_inside(bar({-4, -1, -1}, {4, 3, 19})), 1);
+  EXPECT_EQ(space.share_inside(trousers()), 0);
+  // A sheet between the legs, from the top to the middle. Near the top the way is not far.
+  const TriangleMesh sheet = bar({-1, -1, 8}, {1, 3, 16});
+  EXPECT_NEAR(space.share_inside(sheet), 0.35, 0.1);
+}
+
+TEST(SpaceBetween, IsNotInOneConvexBodyNorInAShallowDent) {
+  EXPECT_EQ(SpaceBetween(make_icosphere(3)).count(), 0U);
+  const TriangleMesh bent = joined(bar({0, 0, 0}, {10, 2, 2}), bar({0, 0, 0}, {2, 10, 2}));
+  EXPECT_EQ(SpaceBetween(bent).count(), 0U);
+}
+
+TEST(SpaceBetween, IsBetweenPiecesThatDoNotTouch) {
+  const TriangleMesh apart = joined(bar({0, 0, 0}, {4, 4, 4}), bar({5, 0, 0}, {9, 4, 4}));
+  EXPECT_GT(SpaceBetween(apart).count(), 100U);
+}
+
+TEST(SpaceBetween, DoesNotDependOnUnitAndPlace) {
+  const TriangleMesh model = trousers();
+  TriangleMesh other = model;
+  for (Vec3& p : other.positions) {
+    p = 0.01 * p + Vec3(3, -7, 11);
+  }
+  EXPECT_EQ(SpaceBetween(model).count(), SpaceBetween(other).count());
+}
+
+TEST(SpaceBetween, OfAnOpenModelIsThatOfTheClosed) {
+  TriangleMesh open = joined(make_icosphere(3), make_icosphere(3));
+  for (std::size_t v = 0; v < open.positions.size() / 2; ++v) {
+    open.positions[v].x() += 2.3;
+  }
+  const auto whole = static_cast<double>(SpaceBetween(open).count());
+  open.triangles.erase(open.triangles.begin() + 3);
+  EXPECT_GT(whole, 100);
+  EXPECT_NEAR(static_cast<double>(SpaceBetween(open).count()), whole, 0.02 * whole);
+}
+
+TEST(SpaceBetween, OfNothingIsEmpty) {
+  EXPECT_EQ(SpaceBetween(TriangleMesh()).count(), 0U);
+  TriangleMesh point = make_cube();
+  std::fill(point.positions.begin(), point.positions.end(), Vec3(1, 2, 3));
+  EXPECT_EQ(SpaceBetween(point).count(), 0U);
+  TriangleMesh infinite = make_cube();
+  infinite.positions[0].x() = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(SpaceBetween(infinite).count(), 0U);
+}
+
+TEST(SpaceBetween, IsTheSameOnAnyNumberOfThreads) {
+  const TriangleMesh model = trousers();
+  std::vector<Vec3> points;
+  tbb::task_arena(1).execute([&] { points = SpaceBetween(model).points(); });
+  EXPECT_EQ(points, SpaceBetween(model).points());
+}
+
+TEST(SpaceBetween, CountsWhatPatchesOfASurfaceEnclose) {
+  // The sum over all faces does not depend on how the surface is cut into triangles.
+  const SpaceBetween space(trousers());
+  const auto inside = [&](const TriangleMesh& mesh) {
+    long sum = 0;
+    for (const Triangle& t : mesh.triangles) {
+      sum += space.behind({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+    }
+    return sum;
+  };
+  for (const double edge : {0.37, 1.0, 4.0}) { // at 1 its sides touch the legs
+    TriangleMesh ball = make_icosphere(2);
+    for (Vec3& p : ball.positions) {
+      p = edge * 2 * p + Vec3(0, 1, 7);
+    }
+    long count = 0;
+    for (const Vec3& p : space.points()) {
+      bool is_inside = true;
+      for (const Triangle& t : ball.triangles) {
+        const Vec3 n = triangle_normal(ball, t);
+        is_inside = is_inside && n.dot(p - ball.positions[t[0]]) < 0;
+      }
+      count += is_inside ? 1 : 0;
+    }
+    EXPECT_EQ(inside(ball), count) << edge;
+  }
+}
+
+} // namespace
+} // namespace cagewright
