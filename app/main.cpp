@@ -1,4 +1,5 @@
 #include "app/main_window.h"
+#include <cagewright/version.h>
 
 #include <QApplication>
 #include <QCommandLineParser>

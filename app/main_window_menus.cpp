@@ -6,6 +6,7 @@
 #include "app/panels/time_line_panel.h"
 #include "app/panels/tool_bar.h"
 #include "app/view/viewport.h"
+#include <cagewright/version.h>
 
 #include <QActionGroup>
 #include <QApplication>
@@ -345,8 +346,9 @@ void MainWindow::make_help_menu() {
     QMessageBox::about(this, tr("About Cagewright"),
                        tr("<b>Cagewright %1</b><p>Builds a cage round a 3D model, proves that it "
                           "is valid, and deforms the model by moving the cage.</p>"
-                          "<p>GPL-3.0-or-later</p>")
-                           .arg(QCoreApplication::applicationVersion()));
+                          "<p>Licence: %2</p>")
+                           .arg(QCoreApplication::applicationVersion(),
+                                CAGEWRIGHT_WITH_BOXES ? "GPL-3.0-or-later" : "MIT"));
   });
 }
 

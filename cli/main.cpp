@@ -1,5 +1,7 @@
 #include "session.h"
 
+#include <cagewright/version.h>
+
 #include <tbb/task_arena.h>
 
 #include <csignal>
@@ -22,6 +24,13 @@ void interrupt(int /*signal*/) {
   std::signal(SIGINT, SIG_DFL); // a second Ctrl-C ends the program at once
 }
 
+constexpr const char* version_text = "cagewright " CAGEWRIGHT_VERSION
+#if CAGEWRIGHT_WITH_BOXES
+                                     "\nwith the union of boxes; licence: GPL-3.0-or-later";
+#else
+                                     "\nwithout the union of boxes; licence: MIT";
+#endif
+
 int run(Session& session) {
   try {
     tbb::task_arena arena(session.threads > 0 ? session.threads : tbb::task_arena::automatic);
@@ -39,7 +48,7 @@ int run(Session& session) {
 int main(int argc, char** argv) {
   Session session;
   CLI::App app("Builds a cage round a 3D model and deforms the model with it.", "cagewright");
-  app.set_version_flag("--version", "cagewright " CAGEWRIGHT_VERSION);
+  app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
   app.add_option("--threads", session.threads, "Threads to use; 0 means all cores")

@@ -3,13 +3,14 @@
 set(CAGEWRIGHT_SANITIZE "" CACHE STRING "Sanitizers to build with, e.g. address,undefined")
 option(CAGEWRIGHT_WERROR "Treat our own warnings as errors" OFF)
 
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
-  set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release or RelWithDebInfo" FORCE)
-endif()
-
-find_program(CAGEWRIGHT_CCACHE ccache)
-if(CAGEWRIGHT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CAGEWRIGHT_CCACHE})
+if(PROJECT_IS_TOP_LEVEL) # a parent project has its own
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release or RelWithDebInfo" FORCE)
+  endif()
+  find_program(CAGEWRIGHT_CCACHE ccache)
+  if(CAGEWRIGHT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CAGEWRIGHT_CCACHE})
+  endif()
 endif()
 
 add_library(cagewright_compiler INTERFACE)

@@ -1,11 +1,15 @@
-# cagewright_add_module(NAME mesh HEADERS ... SOURCES ... USES core ... [LINKS Eigen3::Eigen] [PRIVATE_LINKS ...])
+# cagewright_add_module(NAME mesh HEADERS ... SOURCES ... USES core ... [LINKS Eigen3::Eigen]
+#                       [PRIVATE_LINKS ...] [PACKAGES "Eigen3 3.4" ...] [PKGCONFIG eigen3 ...])
 #
 # One folder, one target: cagewright::NAME, built from src/NAME. HEADERS is the public surface, in
 # include/cagewright/NAME, included and installed as <cagewright/NAME/header.h>; the headers in
 # src/NAME are for this repository alone and included as "NAME/header.h". LINKS are libraries that
-# the public headers need, PRIVATE_LINKS those that only the sources need.
+# the public headers need, PRIVATE_LINKS those that only the sources need. PACKAGES are what
+# find_package() must find before somebody can link the installed module, PKGCONFIG the same for
+# pkg-config; the modules of USES bring their own.
 function(cagewright_add_module)
-  cmake_parse_arguments(PARSE_ARGV 0 M "" "NAME" "HEADERS;SOURCES;USES;LINKS;PRIVATE_LINKS")
+  cmake_parse_arguments(PARSE_ARGV 0 M "" "NAME"
+    "HEADERS;SOURCES;USES;LINKS;PRIVATE_LINKS;PACKAGES;PKGCONFIG")
   set(kind STATIC)
   set(scope PUBLIC)
   if(NOT M_SOURCES)
@@ -22,14 +26,24 @@ function(cagewright_add_module)
   set_target_properties(cagewright_${M_NAME} PROPERTIES
     VERIFY_INTERFACE_HEADER_SETS ON EXPORT_NAME ${M_NAME} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(cagewright_${M_NAME} ${scope} cxx_std_20)
-  list(TRANSFORM M_USES PREPEND cagewright::)
-  target_link_libraries(cagewright_${M_NAME} ${scope} ${M_USES} ${M_LINKS})
+  set(uses ${M_USES})
+  list(TRANSFORM uses PREPEND cagewright::)
+  target_link_libraries(cagewright_${M_NAME} ${scope} ${uses} ${M_LINKS})
   if(M_SOURCES)
     target_link_libraries(cagewright_${M_NAME} PRIVATE $<BUILD_INTERFACE:cagewright_compiler> ${M_PRIVATE_LINKS})
   endif()
-  install(TARGETS cagewright_${M_NAME} EXPORT cagewright
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  # An export of its own: who asks for one component meets no dependency of another (see Install.cmake).
+  set_property(GLOBAL APPEND PROPERTY CAGEWRIGHT_MODULES ${M_NAME})
+  foreach(what USES PACKAGES PKGCONFIG)
+    set_property(GLOBAL PROPERTY CAGEWRIGHT_${M_NAME}_${what} "${M_${what}}")
+  endforeach()
+  if(CAGEWRIGHT_INSTALL)
+    install(TARGETS cagewright_${M_NAME} EXPORT cagewright_${M_NAME}
+      ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+      FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    install(EXPORT cagewright_${M_NAME} NAMESPACE cagewright:: FILE cagewright-${M_NAME}.cmake
+      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/cagewright)
+  endif()
 endfunction()
 
 # cagewright_add_tests(mesh FILES topology_test.cpp ... USES mesh ...): one program per folder of

@@ -696,6 +696,10 @@ Status check_input(std::span<const Hexahedron> solids, const UniteOptions& optio
 
 } // namespace
 
+bool can_unite() {
+  return true;
+}
+
 Result<TriangleMesh> unite(std::span<const Hexahedron> solids, const UniteOptions& options,
                            const Progress& progress) {
   if (const Status status = check_input(solids, options); !status) {

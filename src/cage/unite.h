@@ -22,6 +22,9 @@ struct UniteOptions {
   int attempts = 4;
 };
 
+/// Whether this build has the union: it was not switched off (CAGEWRIGHT_WITH_BOXES).
+bool can_unite();
+
 /// The outer boundary of the union of S solids: closed, edge- and vertex-manifold, oriented
 /// outward, without degenerate triangles or self-intersections, checked exactly on the doubles that
 /// are returned.
@@ -37,7 +40,7 @@ struct UniteOptions {
 /// Tournois and Yaz, "Polygon Mesh Processing", CGAL User Manual 5.5), pairwise in a balanced tree
 /// over space. The result does not depend on the number of threads.
 ///
-/// Errors: invalid_option (no solid, a solid without volume or not finite), no_valid_cage,
+/// Errors: not_available (see can_unite()), invalid_option (no solid, a solid without volume or not finite), no_valid_cage,
 /// cancelled.
 /// Cost: a tenth of a second for the 32 boxes of a character, up to two seconds for 110 boxes that
 /// overlap much, on two idle cores.
