@@ -1,39 +1,35 @@
-// Makes a cage for a model.
+// Makes a cage of at most 60 vertices round a model, of quads where they can be.
 //
 //   make_cage MODEL CAGE.obj
-
-#include <cagewright/cage/generate.h>
-#include <cagewright/io/read_mesh.h>
-#include <cagewright/io/write_mesh.h>
-#include <cagewright/mesh/triangulate.h>
+#include <cagewright/cagewright.h>
 
 #include <iostream>
 
 int main(int argc, char** argv) {
-  using namespace cagewright;
   if (argc != 3) {
     std::cerr << "usage: make_cage MODEL CAGE.obj\n";
     return 2;
   }
-  const Result<PolygonMesh> mesh = read_mesh(argv[1]);
-  if (!mesh) {
-    std::cerr << mesh.error().message << '\n';
+  const auto model = cagewright::read_mesh(argv[1]);
+  if (!model) {
+    std::cerr << model.error().message << '\n';
     return 2;
   }
-  const Result<GeneratedCage> made = generate(to_triangle_mesh(*mesh), {.vertices = 60});
+  const auto made = cagewright::generate(cagewright::to_triangle_mesh(*model),
+                                         {.vertices = 60, .quads = true});
   if (!made) {
-    std::cerr << made.error().message << '\n';
-    return 1;
+    std::cerr << argv[1] << ": " << made.error().message << '\n';
+    return 3;
   }
-  for (const Remark& remark : made->remarks) {
-    std::cout << remark.message << '\n';
+  for (const cagewright::Remark& remark : made->remarks) {
+    std::cerr << remark.message << '\n';
   }
-  const Status written = write_mesh(made->faces, argv[2]);
+  const auto written = cagewright::write_mesh(made->faces, argv[2]);
   if (!written) {
     std::cerr << written.error().message << '\n';
     return 2;
   }
-  std::cout << made->figures.vertices << " vertices, " << made->figures.volume_ratio
-            << " times the model's volume\n";
+  std::cout << made->faces.positions.size() << " vertices, " << made->faces.face_count()
+            << " faces, a valid cage\n";
   return 0;
 }

@@ -2,6 +2,8 @@
 /// Everything that Cagewright offers. Each header can also be included alone.
 #pragma once
 
+#include <cagewright/cage/density.h>
+#include <cagewright/cage/generate.h>
 #include <cagewright/coordinates/compact_weights.h>
 #include <cagewright/coordinates/mean_value.h>
 #include <cagewright/core/progress.h>
