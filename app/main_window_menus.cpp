@@ -281,7 +281,7 @@ void MainWindow::make_view_menu() {
 void MainWindow::make_cage_menu() {
   QMenu* menu = menuBar()->addMenu(tr("&Cage"));
   const auto free = [this] { return !session_.jobs().busy(); };
-  QAction* generate = add(menu, "make_box_cage", tr("&Generate"), {"Ctrl+G"},
+  QAction* generate = add(menu, "generate_cage", tr("&Generate"), {"Ctrl+G"},
                           tr("Makes a cage for the model"), [this] { session_.generate(); });
   QAction* bind = add(menu, "bind_model", tr("&Bind"), {"Ctrl+B"}, tr("Ties the model to the cage"),
                       [this] { session_.bind(); });

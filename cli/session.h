@@ -17,6 +17,7 @@ enum ExitCode : int {
   done = 0,          ///< the command did what was asked
   could_not = 1,     ///< the input was fine, the answer is no: an invalid cage, no cage found
   bad_input = 2,     ///< misused options, or files that cannot be read or written
+  not_as_asked = 3,  ///< a valid result is written, but not all that was asked for holds
   interrupted = 130, ///< stopped by Ctrl-C
 };
 

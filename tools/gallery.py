@@ -39,6 +39,7 @@ class Gallery:
         made = self.run("generate", model, "-o", path, *options)
         if made.returncode != 0:
             print(f"{model.name}: {name}: {made.stderr.strip()}", file=sys.stderr)
+        if made.returncode not in (0, 3):  # 3: a valid cage, though not as asked for
             return None
         return path
 

@@ -41,7 +41,7 @@ def run(*command):
 
 def row(program, model, depth, rule, work):
     cage, figures = work / "cage.obj", work / "cage.json"
-    made = run(program, "generate", model, "-o", cage, "--depth", depth, "--slicing", rule, "--json", figures)
+    made = run(program, "generate", model, "-o", cage, "--method", "boxes", "--depth", depth, "--slicing", rule, "--json", figures)
     if made.returncode != 0:
         return None, f"{model.name}, depth {depth}, {rule}: {made.stderr.strip()}"
     judged = run(program, "check", model, cage)

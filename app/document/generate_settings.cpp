@@ -3,125 +3,87 @@
 #include <QObject>
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
 
 namespace cagewright::app {
 namespace {
 
 using Group = GenerateOption::Group;
 
-bool always(const GenerateSettings& /*s*/) {
-  return true;
-}
-bool with_budget(const GenerateSettings& s) {
-  return s.method != CageMethod::union_of_boxes;
-}
-bool with_boxes(const GenerateSettings& s) {
-  return s.method != CageMethod::envelope;
-}
-bool with_envelope(const GenerateSettings& s) {
-  return s.method == CageMethod::envelope;
-}
-bool with_density_file(const GenerateSettings& s) {
-  return with_budget(s) && s.density == DensitySource::file;
+/// Shown before all others: what most people change.
+constexpr std::array<std::string_view, 5> basic = {"method", "vertices", "quads", "depth",
+                                                   "symmetry"};
+
+QString text(std::string_view english) {
+  return QObject::tr(std::string(english).c_str());
 }
 
-SlicingOptions& slicing(GenerateSettings& s) {
-  return s.options.boxes.boxes.slicing;
-}
-const SlicingOptions& slicing(const GenerateSettings& s) {
-  return s.options.boxes.boxes.slicing;
-}
-
-bool by_volume(const GenerateSettings& s) {
-  return slicing(s).rule == SlicingRule::volume;
-}
-bool by_jumps(const GenerateSettings& s) {
-  return slicing(s).rule == SlicingRule::published;
+Group group_of(const CageOption& option) {
+  if (std::ranges::find(basic, option.name) != basic.end()) {
+    return Group::basic;
+  }
+  return option.group == OptionGroup::envelope ? Group::envelope
+         : option.group == OptionGroup::boxes  ? Group::boxes
+                                               : Group::budget;
 }
 
-QString text(const char* english) {
-  return QObject::tr(english);
+GenerateOption::Integer row(const IntegerOption& option) {
+  const bool has_zero = !option.zero_means.empty();
+  return {has_zero ? 0 : option.least, option.most,
+          [&option](const GenerateSettings& s) { return option.get(s.options); },
+          [&option](GenerateSettings& s, int value) {
+            // Between 0 and the least there is nothing.
+            const bool is_zero = value == 0 && !option.zero_means.empty();
+            option.set(s.options, is_zero ? 0 : std::max(option.least, value));
+          },
+          text(option.zero_means)};
 }
 
-std::vector<GenerateOption> basic_options() {
+GenerateOption::Number row(const NumberOption& option) {
+  const bool has_zero = !option.zero_means.empty();
+  return {has_zero ? 0 : option.least,
+          std::min(option.most, option.is_length ? option.most : 2.0),
+          option.is_length ? 0.001 : 0.01,
+          option.is_length ? 5 : 3,
+          [&option](GenerateSettings& s) -> double& { return s.options.*option.member; },
+          text(option.zero_means)};
+}
+
+GenerateOption::Choice row(const ChoiceOption& option) {
+  GenerateOption::Choice choice{
+      {},
+      {},
+      [&option](const GenerateSettings& s) { return option.get(s.options); },
+      [&option](GenerateSettings& s, int value) { option.set(s.options, value); }};
+  for (const OptionWord& word : option.words) {
+    choice.keys.append(
+        QString::fromUtf8(word.word.data(), static_cast<qsizetype>(word.word.size())));
+    choice.labels.append(text(word.label));
+  }
+  return choice;
+}
+
+GenerateOption of_library(const CageOption& option) {
+  using Kind = decltype(GenerateOption::kind);
+  return {QString::fromUtf8(option.name.data(), static_cast<qsizetype>(option.name.size())),
+          text(option.label), text(option.help), group_of(option),
+          std::visit([](const auto& kind) { return Kind(row(kind)); }, option.kind),
+          // How the model is split into boxes is shown whatever the cage is made from.
+          [&option](const GenerateSettings& s) {
+            return option.group == OptionGroup::boxes
+                       ? option.condition == nullptr || option.condition(s.options)
+                       : cagewright::applies(option, s.options);
+          }};
+}
+
+bool is_improved(const GenerateSettings& s) {
+  return s.options.method != Method::boxes;
+}
+
+std::vector<GenerateOption> density_options() {
   return {
-      {"method", text("Method"),
-       text("What the cage is made from. Envelope: a tight skin of voxels, for any shape; the best "
-            "choice for editing. Boxes: oriented boxes along the limbs, improved within the "
-            "budget. Union of boxes: these boxes as they are, to study the method."),
-       Group::basic,
-       GenerateOption::Choice{{"envelope", "obb", "boxes"},
-                              {text("Envelope"), text("Boxes, improved"), text("Union of boxes")},
-                              [](const GenerateSettings& s) { return static_cast<int>(s.method); },
-                              [](GenerateSettings& s, int i) {
-                                s.method = static_cast<CageMethod>(i);
-                                s.options.start = s.method == CageMethod::envelope
-                                                      ? CageStart::envelope
-                                                      : CageStart::obb;
-                              }},
-       always},
-      {"vertices", text("Vertices"),
-       text("The cage gets at most so many vertices. 50 to 150 are easy to edit by hand; more "
-            "follow the model more closely."),
-       Group::basic,
-       GenerateOption::Integer{
-           0, 100000, [](GenerateSettings& s) -> int& { return s.options.improve.vertices; },
-           text("no limit")},
-       with_budget},
-      {"quads", text("Faces"),
-       text("Quads are easier to select in loops and rings; triangles fit more closely. The cage "
-            "is valid along both diagonals of each quad."),
-       Group::basic,
-       GenerateOption::Choice{
-           {"off", "on"},
-           {text("Triangles"), text("Quads where they can be")},
-           [](const GenerateSettings& s) { return s.options.quads ? 1 : 0; },
-           [](GenerateSettings& s, int i) { s.options.quads = s.options.boxes.quads = i == 1; }},
-       always},
-      {"depth", text("Depth"),
-       text("How often a part of the model may be cut in two: more cuts, more and smaller boxes. "
-            "Also how deep the splitting is shown."),
-       Group::basic,
-       GenerateOption::Integer{
-           0, 12, [](GenerateSettings& s) -> int& { return slicing(s).depth; }, {}},
-       always},
-      {"symmetry", text("Symmetry"),
-       text("Whether the cage is its own mirror image. Automatic: if the model is, in any plane."),
-       Group::basic,
-       GenerateOption::Choice{
-           {"off", "auto", "x", "y", "z"},
-           {text("Off"), text("Automatic"), text("Across X"), text("Across Y"), text("Across Z")},
-           [](const GenerateSettings& s) { return static_cast<int>(s.options.symmetry); },
-           [](GenerateSettings& s, int i) {
-             s.options.symmetry = static_cast<cagewright::Symmetry>(i);
-           }},
-       with_budget},
-  };
-}
-
-std::vector<GenerateOption> budget_options() {
-  return {
-      {"clearance", text("Clearance"),
-       text("Least distance between cage and model, as a fraction of the model's diagonal."),
-       Group::budget,
-       GenerateOption::Number{
-           1e-6, 0.5, 0.001, 5,
-           [](GenerateSettings& s) -> double& { return s.options.improve.clearance; }},
-       with_budget},
-      {"faces", text("Most triangles"), text("The cage gets at most so many triangles, too."),
-       Group::budget,
-       GenerateOption::Integer{0, 200000,
-                               [](GenerateSettings& s) -> int& { return s.options.improve.faces; },
-                               text("no limit")},
-       with_budget},
-      {"max-gap", text("Greatest gap"),
-       text("The coarsest cage no point of which is farther from the model than this fraction of "
-            "its diagonal, proved. Vertices and triangles are then limits only."),
-       Group::budget,
-       GenerateOption::Number{0, 0.5, 0.005, 4,
-                              [](GenerateSettings& s) -> double& { return s.options.max_gap; },
-                              text("as the vertices allow")},
-       with_budget},
       {"density", text("Finer where"),
        text("Where the cage gets more vertices. Painted: where vertex colors are red, and fewer "
             "where they are blue. File: one number for each vertex of the model; four times as "
@@ -132,129 +94,15 @@ std::vector<GenerateOption> budget_options() {
            {text("Even"), text("Painted red"), text("A file says")},
            [](const GenerateSettings& s) { return static_cast<int>(s.density); },
            [](GenerateSettings& s, int i) { s.density = static_cast<DensitySource>(i); }},
-       with_budget},
+       is_improved},
       {"density-file", text("Density file"),
        text("Text with one number to a line, or a NumPy array, in the order of the vertices."),
        Group::budget,
        GenerateOption::File{text("Numbers (*.txt *.csv *.dat *.npy);;All files (*)"),
                             [](GenerateSettings& s) -> QString& { return s.density_file; }},
-       with_density_file},
-      {"pieces", text("Separate pieces"),
-       text("A model in several pieces gets one cage with thin bridges, or a closed piece of cage "
-            "for each."),
-       Group::budget,
-       GenerateOption::Choice{
-           {"together", "apart"},
-           {text("One cage"), text("A cage each")},
-           [](const GenerateSettings& s) { return static_cast<int>(s.options.boxes.boxes.pieces); },
-           [](GenerateSettings& s, int i) {
-             s.options.boxes.boxes.pieces = static_cast<Pieces>(i);
-           }},
-       always},
-  };
-}
-
-std::vector<GenerateOption> envelope_options() {
-  return {
-      {"closing", text("Closing"),
-       text("Holes and gaps narrower than twice this fraction of the diagonal are filled before "
-            "the envelope is made."),
-       Group::envelope,
-       GenerateOption::Number{0, 0.5, 0.005, 4,
-                              [](GenerateSettings& s) -> double& { return s.options.closing; }},
-       with_envelope},
-      {"envelope-resolution", text("Envelope resolution"),
-       text("Voxels along the model's diagonal; finer envelopes follow narrow gaps and take "
-            "longer."),
-       Group::envelope,
-       GenerateOption::Integer{0, 512,
-                               [](GenerateSettings& s) -> int& { return s.options.resolution; },
-                               text("automatic")},
-       with_envelope},
-  };
-}
-
-std::vector<GenerateOption> box_options() {
-  return {
-      {"slicing", text("Slicing rule"),
-       text("Where a box is cut. Volume: where the boxes of the parts get smallest. Published: at "
-            "the greatest jump of the cross-section (Xian, Lin and Gao 2012)."),
-       Group::boxes,
-       GenerateOption::Choice{
-           {"volume", "published"},
-           {text("Volume"), text("Published")},
-           [](const GenerateSettings& s) { return static_cast<int>(slicing(s).rule); },
-           [](GenerateSettings& s, int i) { slicing(s).rule = static_cast<SlicingRule>(i); }},
-       always},
-      {"resolution", text("Resolution"),
-       text("Voxels along the longest axis of the model's box, from which the boxes are made."),
-       Group::boxes,
-       GenerateOption::Integer{
-           8,
-           512,
-           [](GenerateSettings& s) -> int& { return s.options.boxes.boxes.resolution; },
-           {}},
-       always},
-      {"boxes", text("Most boxes"),
-       text("Stop at so many boxes, cutting first where it pays most."), Group::boxes,
-       GenerateOption::Integer{0, 100000,
-                               [](GenerateSettings& s) -> int& { return slicing(s).max_boxes; },
-                               text("no limit")},
-       always},
-      {"eta", text("Eta (T1)"),
-       text("A box is left whole when its least cross-section divided by its greatest is above "
-            "this, and zeta holds too. Above 1: never."),
-       Group::boxes,
-       GenerateOption::Number{0.01, 2, 0.05, 3,
-                              [](GenerateSettings& s) -> double& { return slicing(s).eta; }},
-       always},
-      {"zeta", text("Zeta (T2)"),
-       text("A box is left whole when its shortest edge divided by its longest is above this, and "
-            "eta holds too. Above 1: never."),
-       Group::boxes,
-       GenerateOption::Number{0.01, 2, 0.05, 3,
-                              [](GenerateSettings& s) -> double& { return slicing(s).zeta; }},
-       always},
-      {"min-gain", text("Least gain"),
-       text("Volume rule: a cut must save this fraction of the box's volume."), Group::boxes,
-       GenerateOption::Number{0, 1, 0.005, 4,
-                              [](GenerateSettings& s) -> double& { return slicing(s).min_gain; }},
-       by_volume},
-      {"min-jump", text("Least jump"),
-       text("Published rule: a jump lower than this fraction of the greatest cross-section is not "
-            "clear."),
-       Group::boxes,
-       GenerateOption::Number{0, 1, 0.05, 3,
-                              [](GenerateSettings& s) -> double& { return slicing(s).min_jump; }},
-       by_jumps},
-      {"no-jump", text("Without a jump"),
-       text("Published rule: what becomes of a box in which no axis has a clear jump."),
-       Group::boxes,
-       GenerateOption::Choice{
-           {"skip", "middle"},
-           {text("Leave it whole"), text("Cut in the middle")},
-           [](const GenerateSettings& s) { return static_cast<int>(slicing(s).no_jump); },
-           [](GenerateSettings& s, int i) { slicing(s).no_jump = static_cast<NoJump>(i); }},
-       by_jumps},
-      {"split", text("Split"),
-       text("Whether each connected part of a half gets a box of its own, or each half one."),
-       Group::boxes,
-       GenerateOption::Choice{
-           {"parts", "binary"},
-           {text("Connected parts"), text("Halves")},
-           [](const GenerateSettings& s) { return slicing(s).split_parts ? 0 : 1; },
-           [](GenerateSettings& s, int i) { slicing(s).split_parts = i == 0; }},
-       always},
-      {"registration", text("Join faces"),
-       text("Faces of neighboring boxes are joined where they fit, so that the union has fewer "
-            "slivers."),
-       Group::boxes,
-       GenerateOption::Choice{
-           {"off", "on"},
-           {text("No"), text("Yes")},
-           [](const GenerateSettings& s) { return s.options.boxes.registration ? 1 : 0; },
-           [](GenerateSettings& s, int i) { s.options.boxes.registration = i == 1; }},
-       with_boxes},
+       [](const GenerateSettings& s) {
+         return is_improved(s) && s.density == DensitySource::file;
+       }},
   };
 }
 
@@ -262,10 +110,17 @@ std::vector<GenerateOption> box_options() {
 
 const std::vector<GenerateOption>& generate_options() {
   static const std::vector<GenerateOption> options = [] {
-    std::vector<GenerateOption> all = basic_options();
-    for (const auto& part : {budget_options(), envelope_options(), box_options()}) {
-      all.insert(all.end(), part.begin(), part.end());
+    std::vector<GenerateOption> all;
+    for (const std::string_view name : basic) {
+      all.push_back(of_library(*find_cage_option(name)));
     }
+    for (const CageOption& option : cage_options()) {
+      if (group_of(option) != Group::basic) {
+        all.push_back(of_library(option));
+      }
+    }
+    const std::vector<GenerateOption> density = density_options();
+    all.insert(all.end(), density.begin(), density.end());
     return all;
   }();
   return options;
@@ -276,7 +131,7 @@ QJsonObject to_json(const GenerateSettings& settings) {
   QJsonObject json;
   for (const GenerateOption& option : generate_options()) {
     if (const auto* integer = std::get_if<GenerateOption::Integer>(&option.kind)) {
-      json[option.key] = integer->value(copy);
+      json[option.key] = integer->get(copy);
     } else if (const auto* number = std::get_if<GenerateOption::Number>(&option.kind)) {
       json[option.key] = number->value(copy);
     } else if (const auto* file = std::get_if<GenerateOption::File>(&option.kind)) {
@@ -294,8 +149,10 @@ GenerateSettings generate_settings_from_json(const QJsonObject& json) {
   for (const GenerateOption& option : generate_options()) {
     const QJsonValue value = json[option.key];
     if (const auto* integer = std::get_if<GenerateOption::Integer>(&option.kind)) {
-      int& kept = integer->value(settings);
-      kept = std::clamp(value.toInt(kept), integer->least, integer->most);
+      if (value.isDouble()) {
+        const int kept = value.toInt(integer->get(settings));
+        integer->set(settings, std::clamp(kept, integer->least, integer->most));
+      }
     } else if (const auto* number = std::get_if<GenerateOption::Number>(&option.kind)) {
       double& kept = number->value(settings);
       kept = std::clamp(value.toDouble(kept), number->least, number->most);
@@ -303,8 +160,12 @@ GenerateSettings generate_settings_from_json(const QJsonObject& json) {
       file->value(settings) = value.toString();
     } else {
       const auto& choice = std::get<GenerateOption::Choice>(option.kind);
+      const CageOption* of_table = find_cage_option(option.key.toStdString());
       if (const auto at = choice.keys.indexOf(value.toString()); at >= 0) {
         choice.set(settings, static_cast<int>(at));
+      } else if (of_table != nullptr) { // a word of an earlier version, or none: then as it was
+        static_cast<void>(
+            set_from_text(*of_table, value.toString().toStdString(), settings.options));
       }
     }
   }

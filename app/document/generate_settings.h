@@ -3,7 +3,7 @@
 /// preferences share.
 #pragma once
 
-#include "cage/budget_cage.h"
+#include <cagewright/cage/option_table.h>
 
 #include <QJsonObject>
 #include <QString>
@@ -15,12 +15,6 @@
 
 namespace cagewright::app {
 
-enum class CageMethod {
-  envelope,       ///< a cage within a budget, from an envelope of voxels
-  boxes,          ///< a cage within a budget, from the union of oriented boxes
-  union_of_boxes, ///< that union itself
-};
-
 /// Where the cage is to be finer than elsewhere.
 enum class DensitySource {
   even,
@@ -29,20 +23,19 @@ enum class DensitySource {
 };
 
 struct GenerateSettings {
-  CageMethod method = CageMethod::envelope;
   DensitySource density = DensitySource::even;
   QString density_file; ///< one number for each vertex of the model: see read_vertex_weights()
-  BudgetCageOptions options = {.symmetry = cagewright::Symmetry::automatic}; ///< `start` follows
-                                                                             ///< the method
+  GenerateOptions options;
 };
 
-/// One thing to choose. Numbers are shown as they are; lengths are fractions of the model's
-/// diagonal.
+/// One thing to choose: an option of the library's table, or of the density. Lengths are fractions
+/// of the model's diagonal.
 struct GenerateOption {
   struct Integer {
     int least = 0;
     int most = 0;
-    std::function<int&(GenerateSettings&)> value;
+    std::function<int(const GenerateSettings&)> get;
+    std::function<void(GenerateSettings&, int)> set;
     QString at_least; ///< what to show for `least`, if it means something else: "chosen"
   };
   struct Number {

@@ -1,7 +1,9 @@
 #include "app/jobs/work.h"
 
 #include "app/document/binding.h"
+#include "cage/box_cage.h"
 #include <cagewright/cage/density.h>
+#include <cagewright/cage/generate.h>
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
@@ -44,21 +46,19 @@ Result<std::vector<double>> density_of(const Model& model, const GenerateSetting
   return std::vector<double>();
 }
 
-QString remark_of(const BudgetCage& made, const BudgetCageOptions& options) {
+QString remark_of(const GeneratedCage& made, const GenerateOptions& options) {
   QStringList remarks;
-  if (!made.report.reached) {
-    remarks.append(
-        QObject::tr("larger than asked for: %1").arg(QString::fromStdString(made.report.why_not)));
+  for (const Remark& remark : made.remarks) {
+    const QString message = QString::fromStdString(remark.message);
+    if (remark.is_shortfall) {
+      remarks.append(QObject::tr("not as asked for: %1").arg(message));
+    } else if (remark.reason == Reason::not_mirrored) {
+      remarks.append(QObject::tr("not mirrored: %1").arg(message));
+    } else {
+      remarks.append(message);
+    }
   }
-  if (!made.why_not_boxes.empty()) {
-    remarks.append(QString::fromStdString(made.why_not_boxes));
-  }
-  if (options.symmetry != cagewright::Symmetry::off && !made.mirror &&
-      !made.why_not_mirrored.empty()) {
-    remarks.append(
-        QObject::tr("not mirrored: %1").arg(QString::fromStdString(made.why_not_mirrored)));
-  }
-  if (made.quads) {
+  if (made.quads && options.quads) {
     remarks.append(
         QObject::tr("%1 % of the faces are quads").arg(std::lround(100 * made.quads->share)));
   }
@@ -69,42 +69,31 @@ QString remark_of(const BudgetCage& made, const BudgetCageOptions& options) {
 
 Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
                            const Progress& progress) {
-  if (settings.method == CageMethod::union_of_boxes) {
-    Result<BoxCage> made = make_box_cage(model.view(), settings.options.boxes, progress);
-    if (!made) {
-      return made.error();
-    }
-    return MadeCage{std::make_shared<const PolygonMesh>(std::move(made->faces)),
-                    std::make_shared<const BoxDecomposition>(std::move(made->boxes)),
-                    {}};
+  GenerateOptions options = settings.options;
+  Result<std::vector<double>> density = std::vector<double>();
+  if (options.method != Method::boxes) {
+    density = density_of(model, settings);
   }
-  BudgetCageOptions options = settings.options;
-  if (options.improve.vertices == 0 && options.improve.faces == 0 && options.max_gap == 0) {
-    return Error{ErrorCode::invalid_option,
-                 "the cage needs a limit: give a number of vertices or triangles, or a greatest "
-                 "gap"};
-  }
-  const Result<std::vector<double>> density = density_of(model, settings);
   if (!density) {
     return density.error();
   }
-  options.improve.density = *density;
-  Result<BudgetCage> made = make_budget_cage(model.view(), options, progress);
+  options.density = *density;
+  Result<GeneratedCage> made = generate(model.view(), options, progress);
   if (!made) {
     return made.error();
   }
-  MadeCage result{std::make_shared<const PolygonMesh>(made->polygons ? *std::move(made->polygons)
-                                                                     : PolygonMesh(made->cage)),
-                  nullptr, remark_of(*made, options)};
-  if (made->boxes) {
-    result.stages = std::make_shared<const BoxDecomposition>(std::move(made->boxes->boxes));
+  MadeCage result{std::make_shared<const PolygonMesh>(std::move(made->faces)), nullptr,
+                  remark_of(*made, options)};
+  if (made->box_tree) {
+    result.stages = std::shared_ptr<const BoxDecomposition>(made->box_tree, &made->box_tree->boxes);
   }
   return result;
 }
 
 Result<std::shared_ptr<const BoxDecomposition>>
 make_stages(const Model& model, const GenerateSettings& settings, const Progress& progress) {
-  Result<BoxDecomposition> boxes = decompose(model.view(), settings.options.boxes.boxes, progress);
+  Result<BoxDecomposition> boxes =
+      decompose(model.view(), decompose_options(settings.options), progress);
   if (!boxes) {
     return boxes.error();
   }

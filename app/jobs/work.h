@@ -24,8 +24,8 @@ struct MadeCage {
   QString remark; ///< what is not as asked for, and shares of quads; or empty
 };
 
-/// Makes a cage as the settings say. Errors: those of make_budget_cage(), make_box_cage(),
-/// painted_density() and read_vertex_weights(); invalid_option (nothing limits the cage).
+/// Makes a cage as the settings say. Errors: those of generate(), painted_density() and
+/// read_vertex_weights().
 Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
                            const Progress& progress = {});
 

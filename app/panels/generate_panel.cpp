@@ -161,12 +161,11 @@ GeneratePanel::Field GeneratePanel::field_of(const GenerateOption::Integer& inte
   box->setRange(integer.least, integer.most);
   box->setSpecialValueText(integer.at_least);
   connect(box, &QSpinBox::valueChanged, this, [this, &integer](int value) {
-    change([&](GenerateSettings& s) { integer.value(s) = value; });
+    change([&](GenerateSettings& s) { integer.set(s, value); });
   });
   return {box, [this, box, &integer] {
-            GenerateSettings settings = session_.settings();
             const QSignalBlocker blocker(box);
-            box->setValue(integer.value(settings));
+            box->setValue(integer.get(session_.settings()));
           }};
 }
 

@@ -2,7 +2,6 @@
 #include "generate/run.h"
 #include "session.h"
 
-#include <map>
 #include <memory>
 #include <string>
 
@@ -15,18 +14,50 @@ void add_generate(CLI::App& app, Session& session) {
       ->required();
   command->add_option("-o,--output", arguments->output, "OBJ, PLY, STL or OFF file to write")
       ->required();
-  command->add_option("--json", arguments->json,
-                      "File for all figures: every box, axis, cross-section and cut");
+  add_cage_options(*command, *arguments);
   command
-      ->add_option("--emit", arguments->emit,
-                   "What to write: the cage, the boxes (one object each), or the voxels")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Emit>{
-          {"cage", Emit::cage}, {"boxes", Emit::boxes}, {"voxels", Emit::voxels}}))
-      ->default_str("cage");
-  add_slicing_options(*command, arguments->options.boxes.slicing);
-  add_pipeline_options(*command, arguments->options);
-  add_budget_options(*command, *arguments);
+      ->add_option(
+          "--density", arguments->density,
+          "Where the cage is to be finer: a text or .npy file of one number for each vertex "
+          "of the model (four times as much: edges half as long), or 'colors': where its "
+          "vertex colors are red, and coarser where blue")
+      ->option_text("FILE|colors")
+      ->group(std::string(title_of(OptionGroup::model)));
+  const char* results = "Results";
+  command
+      ->add_option("--json", arguments->json,
+                   "File for all figures and the options used; of boxes every box, axis, "
+                   "cross-section and cut")
+      ->option_text("FILE")
+      ->group(results);
+  command
+      ->add_option_function<std::string>(
+          "--emit",
+          [arguments](const std::string& what) {
+            arguments->emit = what == "boxes"    ? Emit::boxes
+                              : what == "voxels" ? Emit::voxels
+                                                 : Emit::cage;
+          },
+          "What to write: the cage, the boxes (one object each), or the voxels they are made of")
+      ->check(CLI::IsMember({"cage", "boxes", "voxels"}))
+      ->option_text("cage|boxes|voxels [cage]")
+      ->group(results);
+  command->footer("Lengths are parts of the diagonal of the model's box: 0.2% or 0.002.\n"
+                  "Options of the boxes without --method mean boxes.\n"
+                  "Exit code 0: done as asked; 3: a valid cage is written, but not all that was "
+                  "asked for holds.\n\n"
+                  "Examples:\n"
+                  "  cagewright generate model.obj -o cage.obj                  the best cage of "
+                  "100 vertices\n"
+                  "  cagewright generate model.obj -o cage.obj --vertices 60 --quads\n"
+                  "  cagewright generate model.obj -o cage.obj --max-gap 2%     the coarsest cage "
+                  "within 2 %\n"
+                  "  cagewright generate model.obj -o cage.obj --pieces apart   a closed surface "
+                  "for each piece\n"
+                  "  cagewright generate model.obj -o boxes.obj --depth 4       the union of "
+                  "oriented boxes\n");
   command->callback([arguments, &session] {
+    imply_method(*arguments);
     session.run = [arguments, &session] { return run_generate(*arguments, session); };
   });
 }

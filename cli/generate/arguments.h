@@ -1,17 +1,16 @@
 /// \file
-/// What the command line of `generate` says, and its groups of options.
+/// What the command line of `generate` says.
 ///
-/// To add an option: a member of the library's own options struct, or of GenerateArguments if it is
-/// none of the library's business; its declaration in the group it belongs to,
-/// cli/generate/<group>_options.cpp; what the result says of it in report.cpp.
+/// To add an option of the cage: a member of GenerateOptions, and a line in the library's table of
+/// options. What is no business of the library's is declared in cli/commands/generate.cpp.
 #pragma once
 
-#include "cage/box_cage.h"
-#include "cage/budget_cage.h"
+#include <cagewright/cage/option_table.h>
 
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <vector>
 
 namespace cagewright::cli {
 
@@ -22,20 +21,19 @@ struct GenerateArguments {
   std::string output;
   std::string json;
   Emit emit = Emit::cage;
-  BoxCageOptions options;   ///< of the union of the boxes
-  bool has_budget = false;  ///< an option asks for more than the union of the boxes
-  int vertices = 0;         ///< 0: not given
-  std::string density;      ///< a file, or "colors"; empty: even
-  BudgetCageOptions budget; ///< of the cage within a budget; its `boxes` are set by run_generate()
+  std::string density; ///< a file, or "colors"; empty: even
+  GenerateOptions options;
+  std::vector<const CageOption*> given; ///< options on the command line
 };
 
-/// --depth, --boxes, --slicing and the rest: slicing_options.cpp
-void add_slicing_options(CLI::App& command, SlicingOptions& slicing);
+/// Declares all options of the library's table, under their names, in their groups.
+void add_cage_options(CLI::App& command, GenerateArguments& arguments);
 
-/// --resolution, --registration, --pieces: pipeline_options.cpp
-void add_pipeline_options(CLI::App& command, BoxCageOptions& options);
+/// Options of the boxes without a method mean boxes: their union as it is, or improved if something
+/// is asked for that the union does not heed.
+void imply_method(GenerateArguments& arguments);
 
-/// --vertices, --faces, --max-gap, --method, --clearance and the rest: budget_options.cpp
-void add_budget_options(CLI::App& command, GenerateArguments& arguments);
+/// A sentence for each option on the command line that makes no difference. Each ends in a newline.
+std::string without_effect(const GenerateArguments& arguments);
 
 } // namespace cagewright::cli

@@ -4,9 +4,13 @@
 #include "json.h"
 #include "plane_text.h"
 
+#include "cage/box_cage.h"
+#include <cagewright/cage/option_table.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <variant>
 
 namespace cagewright::cli {
 namespace {
@@ -134,22 +138,16 @@ nlohmann::json to_json(const BoxDecomposition& boxes, const std::vector<int>& co
   return j;
 }
 
-nlohmann::json to_json(const BoxCage& made, const CageMetrics& metrics) {
-  nlohmann::json j = to_json(made.boxes, made.leaves);
-  j["registration"] = to_json(made.registration);
-  j["cage"] = figures_as_json(metrics);
-  j["cage"]["valid"] = true; // make_box_cage() returns no other
-  if (made.faces.face_count() < made.cage.triangles.size()) {
-    j["quads"] = to_json(report_of(made.faces));
-  }
-  j["times"] = to_json(made.times);
-  return j;
-}
-
 namespace {
 
-nlohmann::json symmetry_json(const BudgetCage& made) {
-  nlohmann::json j = {{"mirrored", made.mirror.has_value()}, {"why_not", made.why_not_mirrored}};
+std::string message_of(const GeneratedCage& made, Reason reason) {
+  const auto found = std::ranges::find(made.remarks, reason, &Remark::reason);
+  return found == made.remarks.end() ? "" : found->message;
+}
+
+nlohmann::json symmetry_json(const GeneratedCage& made) {
+  nlohmann::json j = {{"mirrored", made.mirror.has_value()},
+                      {"why_not", message_of(made, Reason::not_mirrored)}};
   if (made.mirror) {
     const MirrorPairing& mirror = *made.mirror;
     j["plane"] = {{"normal", json_of(mirror.plane.normal)}, {"offset", mirror.plane.offset}};
@@ -162,9 +160,10 @@ nlohmann::json symmetry_json(const BudgetCage& made) {
   return j;
 }
 
-std::string symmetry_line(const BudgetCage& made) {
+std::string symmetry_line(const GeneratedCage& made) {
   if (!made.mirror) {
-    return made.why_not_mirrored.empty() ? "" : "  not mirrored: " + made.why_not_mirrored + "\n";
+    const std::string why_not = message_of(made, Reason::not_mirrored);
+    return why_not.empty() ? "" : "  not mirrored: " + why_not + "\n";
   }
   const MirrorPairing& mirror = *made.mirror;
   std::size_t on_plane = 0;
@@ -178,29 +177,64 @@ std::string symmetry_line(const BudgetCage& made) {
       mirror.error == 0 ? "exact" : fmt::format("exact but for rounding, {:.2g}", mirror.error));
 }
 
+nlohmann::json to_json(const GenerateOptions& options) {
+  nlohmann::json j;
+  for (const CageOption& option : cage_options()) {
+    nlohmann::json& value = j[std::string(option.name)];
+    if (const auto* integer = std::get_if<IntegerOption>(&option.kind)) {
+      value = integer->get(options);
+    } else if (const auto* number = std::get_if<NumberOption>(&option.kind)) {
+      value = options.*number->member;
+    } else {
+      value = text_of(option, options);
+    }
+  }
+  j["density"] = options.density.empty() ? "even" : "given";
+  return j;
+}
+
+nlohmann::json to_json(const std::vector<Remark>& remarks) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const Remark& remark : remarks) {
+    j.push_back({{"reason", name_of(remark.reason)},
+                 {"message", remark.message},
+                 {"shortfall", remark.is_shortfall}});
+  }
+  return j;
+}
+
+std::string method_name(Method method) {
+  GenerateOptions options;
+  options.method = method;
+  return text_of(*find_cage_option("method"), options);
+}
+
 } // namespace
 
-nlohmann::json to_json(const BudgetCage& made, const CageMetrics& metrics) {
+nlohmann::json to_json(const GeneratedCage& made, const GenerateOptions& options) {
   nlohmann::json j;
-  if (made.boxes) {
-    j = to_json(made.boxes->boxes, made.boxes->leaves);
-    j["registration"] = to_json(made.boxes->registration);
+  if (made.box_tree) {
+    j = to_json(made.box_tree->boxes, made.box_tree->leaves);
+    j["registration"] = to_json(made.box_tree->registration);
   }
   j["format"] = "cagewright-generate";
   j["version"] = 1;
+  j["options"] = to_json(options);
+  j["method"] = method_name(made.method);
   j["start"] = {{"vertices", made.start_vertices},
                 {"envelope_resolution", made.resolution},
                 {"bridges", made.bridges}};
-  j["budget"] = {{"reached", made.report.reached},
-                 {"why_not", made.report.why_not},
+  j["budget"] = {{"reached", made.is_as_asked()},
+                 {"why_not", made.is_as_asked() ? "" : made.remarks.front().message},
                  {"clearance", made.clearance},
-                 {"objective", made.report.objective},
-                 {"clearance_asked", made.clearance_asked},
+                 {"objective", made.objective},
+                 {"clearance_asked", options.method == Method::boxes ? 0 : options.clearance},
                  {"pieces", made.pieces},
                  {"joined", made.joined}};
   j["budget"]["gap"] = made.gap ? nlohmann::json(*made.gap) : nlohmann::json();
-  j["cage"] = figures_as_json(metrics);
-  j["cage"]["valid"] = true; // make_budget_cage() returns no other
+  j["remarks"] = to_json(made.remarks);
+  j["cage"] = figures_as_json(made.figures);
+  j["cage"]["valid"] = true; // generate() returns no other
   if (made.quads) {
     j["quads"] = to_json(*made.quads);
     j["limb_rings"] = made.limb_rings;
@@ -217,27 +251,23 @@ std::string summary(const BoxDecomposition& boxes, const std::vector<int>& cover
          boxes_line(boxes, cover.size()) + times_line(boxes.times);
 }
 
-std::string summary(const BoxCage& made, const CageMetrics& metrics) {
-  return "a valid cage\n" + boxes_line(made.boxes, made.leaves.size()) +
-         fmt::format("  {} pairs of neighbouring boxes joined at a common quad\n",
-                     made.registration.joints.size()) +
-         (made.faces.face_count() < made.cage.triangles.size() ? quads_line(report_of(made.faces))
-                                                               : std::string()) +
-         figures_as_text(metrics) + times_line(made.times);
-}
-
-std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
-  std::string text = made.report.reached
-                         ? "a valid cage\n"
-                         : "a valid cage, but not as asked for: " + made.report.why_not + "\n";
-  if (made.boxes) {
-    text += fmt::format("  made from {} boxes, {} vertices\n", made.boxes->leaves.size(),
-                        made.start_vertices);
+std::string summary(const GeneratedCage& made, const GenerateOptions& options) {
+  std::string text =
+      made.is_as_asked()
+          ? "a valid cage\n"
+          : "a valid cage, but not as asked for: " + made.remarks.front().message + "\n";
+  if (made.method == Method::boxes) {
+    text += boxes_line(made.box_tree->boxes, made.boxes.size());
+    text += fmt::format("  {} pairs of neighbouring boxes joined at a common quad\n",
+                        made.box_tree->registration.joints.size());
+  } else if (made.box_tree) {
+    text +=
+        fmt::format("  made from {} boxes, {} vertices\n", made.boxes.size(), made.start_vertices);
   } else if (made.resolution > 0) {
     text += fmt::format("  made from an envelope of {} voxels along the diagonal, {} vertices\n",
                         made.resolution, made.start_vertices);
   }
-  if (made.bridges > 0) {
+  if (made.bridges > 0 && made.method != Method::boxes) {
     text += fmt::format("  bridges between pieces of the model: {}\n", made.bridges);
   }
   if (made.pieces > 1 || made.joined > 0) {
@@ -248,25 +278,25 @@ std::string summary(const BudgetCage& made, const CageMetrics& metrics) {
                         "meet, lie within another, or be too small for the budget)\n",
                         made.joined);
   }
-  if (!made.why_not_boxes.empty()) {
-    text += "  not made from boxes: " + made.why_not_boxes + "\n";
+  if (const std::string why_not = message_of(made, Reason::boxes_not_possible); !why_not.empty()) {
+    text += "  not made from boxes: " + why_not + "\n";
   }
   text += symmetry_line(made);
   text += made.quads ? quads_line(*made.quads) : std::string();
   if (!made.limb_rings.empty()) {
     text += fmt::format("  rings of edges round limbs: {}\n", made.limb_rings.size());
   }
-  if (made.clearance < made.clearance_asked) {
+  if (!message_of(made, Reason::clearance_not_kept).empty()) {
     text += fmt::format("  the boxes came nearer than the clearance asked for: {:.4f} % of the "
                         "diagonal was kept, not {:.4f} %\n",
-                        100 * made.clearance, 100 * made.clearance_asked);
+                        100 * made.clearance, 100 * options.clearance);
   }
   if (made.gap) {
     text += fmt::format("  no point of the cage is farther than {:.4f} % of the diagonal from the "
                         "model (proved)\n",
                         100 * *made.gap);
   }
-  return text + figures_as_text(metrics) + times_line(made.times);
+  return text + figures_as_text(made.figures) + times_line(made.times);
 }
 
 } // namespace cagewright::cli

@@ -4,12 +4,13 @@
 #include "generate/report.h"
 #include "load.h"
 
+#include "cage/decompose.h"
 #include "cage/hexahedron.h"
 #include "io/atomic_file.h"
 #include "voxel/voxel_mesh.h"
+#include <cagewright/cage/generate.h>
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/triangulate.h>
-#include <cagewright/validate/cage_metrics.h>
 
 #include <array>
 #include <cstdio>
@@ -67,7 +68,7 @@ Status write_outputs(const GenerateArguments& arguments, const PolygonMesh& mesh
 int emit_stage(const GenerateArguments& arguments, const Session& session,
                const TriangleMesh& model) {
   const Result<BoxDecomposition> boxes =
-      decompose(model, arguments.options.boxes, session.progress());
+      decompose(model, decompose_options(arguments.options), session.progress());
   if (!boxes) {
     return fail(in_file(arguments.model, boxes.error()));
   }
@@ -81,50 +82,30 @@ int emit_stage(const GenerateArguments& arguments, const Session& session,
   return done;
 }
 
-int make_cage(const GenerateArguments& arguments, const Session& session,
-              const TriangleMesh& model) {
-  const Progress progress = session.progress();
-  const Result<BoxCage> made = make_box_cage(model, arguments.options, progress.part(0, 0.97));
+int make_cage(const GenerateArguments& arguments, const Session& session, const TriangleMesh& model,
+              const std::vector<double>& density) {
+  GenerateOptions options = arguments.options;
+  options.density = density;
+  const Result<GeneratedCage> made = generate(model, options, session.progress());
   if (!made) {
     return fail(in_file(arguments.model, made.error()));
   }
-  const CageMetrics metrics = measure_cage(made->cage, model);
-  progress(1, "done");
-  if (const Status written = write_outputs(arguments, made->faces, to_json(*made, metrics));
+  if (const Status written = write_outputs(arguments, made->faces, to_json(*made, options));
       !written) {
     return fail(written.error());
   }
-  say(session, summary(*made, metrics));
-  return done;
-}
-
-int make_cage_within_budget(const GenerateArguments& arguments, const Session& session,
-                            const TriangleMesh& model, const std::vector<double>& density) {
-  const Progress progress = session.progress();
-  BudgetCageOptions options = arguments.budget;
-  options.boxes = arguments.options;
-  options.quads = arguments.options.quads;
-  options.improve.density = density;
-  if (arguments.vertices > 0 || options.improve.faces > 0 || options.max_gap > 0) {
-    options.improve.vertices = arguments.vertices;
+  say(session, summary(*made, options));
+  if (made->is_as_asked()) {
+    return done;
   }
-  const Result<BudgetCage> made = make_budget_cage(model, options, progress.part(0, 0.97));
-  if (!made) {
-    return fail(in_file(arguments.model, made.error()));
-  }
-  const PolygonMesh cage = made->polygons ? *made->polygons : PolygonMesh(made->cage);
-  const CageMetrics metrics = measure_cage(cage, model);
-  progress(1, "done");
-  if (const Status written = write_outputs(arguments, cage, to_json(*made, metrics)); !written) {
-    return fail(written.error());
-  }
-  say(session, summary(*made, metrics));
-  return done;
+  std::fprintf(stderr, "cagewright: not as asked for: %s\n", made->remarks.front().message.c_str());
+  return not_as_asked;
 }
 
 } // namespace
 
 int run_generate(const GenerateArguments& arguments, const Session& session) {
+  std::fputs(without_effect(arguments).c_str(), stderr);
   if (const Status writable = can_write_mesh(arguments.output); !writable) {
     return fail(writable.error());
   }
@@ -136,9 +117,6 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
   if (arguments.emit != Emit::cage) {
     return emit_stage(arguments, session, model);
   }
-  if (!arguments.has_budget) {
-    return make_cage(arguments, session, model);
-  }
   std::vector<double> density;
   if (!arguments.density.empty()) {
     Result<std::vector<double>> asked = density_of(arguments.density, *mesh);
@@ -147,7 +125,7 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
     }
     density = std::move(*asked);
   }
-  return make_cage_within_budget(arguments, session, model, density);
+  return make_cage(arguments, session, model, density);
 }
 
 } // namespace cagewright::cli

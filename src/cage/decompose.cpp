@@ -9,6 +9,20 @@
 
 namespace cagewright {
 
+DecomposeOptions decompose_options(const GenerateOptions& options) {
+  return {.resolution = options.resolution,
+          .pieces = options.pieces,
+          .slicing = {.rule = options.slicing,
+                      .depth = options.depth,
+                      .max_boxes = options.max_boxes,
+                      .split_parts = options.split_parts,
+                      .eta = options.eta,
+                      .zeta = options.zeta,
+                      .min_jump = options.min_jump,
+                      .no_jump = options.no_jump,
+                      .min_gain = options.min_gain}};
+}
+
 VoxelGrid in_grid_coordinates(const VoxelGrid& grid) {
   VoxelGrid plain;
   plain.dims = grid.dims;

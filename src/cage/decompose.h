@@ -25,6 +25,9 @@ struct DecomposeOptions {
   double clearance = 0;
 };
 
+/// What these options say of the boxes. Their clearance is not heeded: Method::boxes has none.
+DecomposeOptions decompose_options(const GenerateOptions& options);
+
 /// All that was made on the way to the boxes.
 struct BoxDecomposition {
   UnitFrame frame;        ///< between the model's coordinates and unit coordinates

@@ -2,6 +2,7 @@
 
 #include "cage/box_cage.h"
 #include "cage/budget_cage.h"
+#include <cagewright/cage/option_table.h>
 #include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
@@ -14,17 +15,7 @@ constexpr double made_by = 0.97; // of the time; the figures come after
 
 BoxCageOptions box_options(const GenerateOptions& options) {
   BoxCageOptions boxes;
-  boxes.boxes.resolution = options.resolution;
-  boxes.boxes.pieces = options.pieces;
-  boxes.boxes.slicing = {.rule = options.slicing,
-                         .depth = options.depth,
-                         .max_boxes = options.max_boxes,
-                         .split_parts = options.split_parts,
-                         .eta = options.eta,
-                         .zeta = options.zeta,
-                         .min_jump = options.min_jump,
-                         .no_jump = options.no_jump,
-                         .min_gain = options.min_gain};
+  boxes.boxes = decompose_options(options);
   boxes.registration = options.registration;
   boxes.quads = options.quads;
   return boxes;
@@ -162,6 +153,14 @@ bool GeneratedCage::is_as_asked() const {
 
 Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& options,
                                const Progress& progress) {
+  if (const Status in_range = check_ranges(options); !in_range) {
+    return in_range.error();
+  }
+  const bool has_limit = vertex_limit(options) > 0 || options.faces > 0 || options.max_gap > 0;
+  if (options.method != Method::boxes && !has_limit) {
+    return Error{ErrorCode::invalid_option,
+                 "the cage needs a limit: give a number of vertices or faces, or a greatest gap"};
+  }
   const Progress making = progress.part(0, made_by);
   Result<GeneratedCage> made = options.method == Method::boxes
                                    ? union_of_boxes(model, options, making)

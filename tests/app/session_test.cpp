@@ -79,7 +79,7 @@ TEST_F(SessionTest, MakesACageThatTheCheckCallsValid) {
   session_.open(path("model.obj"));
   wait();
   GenerateSettings settings;
-  settings.options.improve.vertices = 40;
+  settings.options.vertices = 40;
   session_.set_settings(settings);
   session_.generate();
   EXPECT_FALSE(session_.document().has_cage()) << "the cage comes when it is ready";
@@ -99,8 +99,8 @@ TEST_F(SessionTest, MakesQuadsWhereTheyAreAskedFor) {
   session_.open(path("model.obj"));
   wait();
   GenerateSettings settings;
-  settings.options.improve.vertices = 24;
-  settings.options.improve.rounds = 0; // quick
+  settings.options.vertices = 24;
+  settings.options.rounds = 0; // quick
   settings.options.quads = true;
   session_.set_settings(settings);
   session_.generate();
@@ -121,7 +121,7 @@ TEST_F(SessionTest, MakesTheCageFinerWhereAFileSaysSo) {
   session_.open(path("model.obj"));
   wait();
   GenerateSettings settings;
-  settings.options.improve.vertices = 60;
+  settings.options.vertices = 60;
   settings.density = DensitySource::file;
   settings.density_file = QString::fromStdString(path("density.txt").string());
   {
@@ -159,7 +159,7 @@ TEST_F(SessionTest, SaysWhatADensityLacks) {
   settings.density_file = QString::fromStdString(path("short.txt").string());
   EXPECT_NE(failure().find("short.txt"), std::string::npos);
   settings.density = DensitySource::even;
-  settings.options.improve.vertices = 0;
+  settings.options.vertices = 0;
   EXPECT_NE(failure().find("needs a limit"), std::string::npos);
   EXPECT_FALSE(session_.document().has_cage());
 }
@@ -168,8 +168,8 @@ TEST(GenerateSettings, ComeBackFromAFile) {
   GenerateSettings settings;
   for (const GenerateOption& option : generate_options()) { // each another than its default
     if (const auto* integer = std::get_if<GenerateOption::Integer>(&option.kind)) {
-      int& value = integer->value(settings);
-      value = value == integer->most ? value - 1 : value + 1;
+      const int value = integer->get(settings);
+      integer->set(settings, value == integer->most ? value - 1 : value + 1);
     } else if (const auto* number = std::get_if<GenerateOption::Number>(&option.kind)) {
       number->value(settings) = (number->value(settings) + number->most) / 2;
     } else if (const auto* file = std::get_if<GenerateOption::File>(&option.kind)) {
@@ -186,6 +186,14 @@ TEST(GenerateSettings, ComeBackFromAFile) {
     EXPECT_NE(json[option.key], defaults[option.key]) << option.key.toStdString();
     EXPECT_FALSE(option.help.isEmpty());
   }
+}
+
+TEST(GenerateSettings, OfAnEarlierVersionAreUnderstood) {
+  EXPECT_EQ(generate_settings_from_json({{"method", "obb"}}).options.method,
+            Method::boxes_improved);
+  const GenerateSettings unknown = generate_settings_from_json({{"method", "wrap"}});
+  EXPECT_EQ(unknown.options.method, Method::envelope);
+  EXPECT_EQ(vertex_limit(unknown.options), 100);
 }
 
 TEST_F(SessionTest, KeepsTheOldCageWhenGeneratingIsCancelled) {
@@ -370,9 +378,8 @@ TEST_F(SessionTest, ComesBackFromAProjectAsItWas) {
   session_.editor().add_pose("one");
   session_.editor().set_keyframe(7);
   GenerateSettings settings;
-  settings.method = CageMethod::boxes;
-  settings.options.start = CageStart::obb;
-  settings.options.improve.clearance = 0.0123;
+  settings.options.method = Method::boxes_improved;
+  settings.options.clearance = 0.0123;
   session_.set_settings(settings);
   Layers layers = session_.document().layers();
   layers.wireframe = true;
@@ -396,8 +403,8 @@ TEST_F(SessionTest, ComesBackFromAProjectAsItWas) {
   ASSERT_EQ(session_.document().state().time_line.keys.size(), 1U);
   EXPECT_EQ(session_.document().state().time_line.keys[0].frame, 7);
   EXPECT_TRUE(session_.document().layers().wireframe);
-  EXPECT_EQ(session_.settings().method, CageMethod::boxes);
-  EXPECT_EQ(session_.settings().options.improve.clearance, 0.0123);
+  EXPECT_EQ(session_.settings().options.method, Method::boxes_improved);
+  EXPECT_EQ(session_.settings().options.clearance, 0.0123);
   EXPECT_FALSE(session_.modified());
 }
 

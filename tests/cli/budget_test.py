@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
-DONE, COULD_NOT, BAD_INPUT = 0, 1, 2
+DONE, COULD_NOT, BAD_INPUT, NOT_AS_ASKED = 0, 1, 2, 3
 
 
 def torus(around=32, across=16, tube=0.3, offset=(0, 0, 0), scale=1.0, first=1):
@@ -85,9 +85,10 @@ class InAFolder(unittest.TestCase):
             path.write_text(content, encoding="utf-8")
         return path
 
-    def generate(self, *options, model=None, pieces=False):
+    def generate(self, *options, model=None, pieces=False, ends=DONE):
         made = run("generate", model or self.model, "-o", self.cage, "--json", self.figures, *options)
-        self.assertEqual(made.returncode, DONE, made.stderr)
+        self.assertEqual(made.returncode, ends, made.stderr)
+        self.assertEqual(made.stderr.count("\n"), 0 if ends == DONE else 1, made.stderr)
         judged = run("check", model or self.model, self.cage, *(["--allow-pieces"] if pieces else []))
         self.assertEqual(judged.returncode, DONE, judged.stdout)
         return json.loads(self.figures.read_text()), made.stdout
@@ -103,20 +104,31 @@ class InAFolder(unittest.TestCase):
 class Budget(InAFolder):
     def test_of_vertices_and_of_faces_is_kept(self):
         for options in (("--vertices", 40), ("--faces", 76), ("--vertices", 200, "--faces", 76),
-                        ("--vertices", 40, "--faces", 400), ("--vertices", 40, "--method", "obb")):
+                        ("--vertices", 40, "--faces", 400), ("--vertices", 40, "--method", "boxes-improved")):
             data, _ = self.generate(*options)
             self.assertTrue(data["budget"]["reached"])
             self.assertLessEqual(data["cage"]["vertices"], 40, options)
             self.assertLessEqual(data["cage"]["faces"], 80, options)
             self.assertGreaterEqual(data["cage"]["vertices"], 30, options)
 
-    def test_is_a_hundred_vertices_where_only_another_option_is_given(self):
-        data, _ = self.generate("--method", "envelope")
+    def test_is_a_hundred_vertices_where_nothing_is_said_of_it(self):
+        data, _ = self.generate()
         self.assertLessEqual(data["cage"]["vertices"], 100)
         self.assertGreater(data["cage"]["vertices"], 80)
+        self.assertEqual(data["method"], "envelope")
+        self.assertTrue(data["symmetry"]["mirrored"])
+        best = self.cage.read_bytes()
+        self.generate("--method", "envelope", "--vertices", 100, "--clearance", "0.2%", "--symmetry", "auto")
+        self.assertEqual(self.cage.read_bytes(), best)
+
+    def test_that_cannot_be_kept_ends_with_three_and_a_reason_in_one_sentence(self):
+        data, text = self.generate("--vertices", 5, "--depth", 3, ends=NOT_AS_ASKED)  # a torus needs seven
+        self.assertEqual([r["reason"] for r in data["remarks"] if r["shortfall"]], ["budget_not_reached"])
+        self.assertFalse(data["budget"]["reached"])
+        self.assertIn("not as asked for", text)
 
     def test_keeps_the_clearance_from_both_starts(self):
-        for method in ("envelope", "obb"):
+        for method in ("envelope", "boxes-improved"):
             data, text = self.generate("--vertices", 40, "--clearance", 0.02, "--method", method)
             self.assertGreaterEqual(data["cage"]["clearance"], 0.02 * (1 - 1e-9), method)
             self.assertEqual(data["budget"]["clearance"], 0.02)
@@ -127,6 +139,41 @@ class Budget(InAFolder):
                        ("--faces", 2), ("--faces", "many"), ("--clearance", 0), ("--clearance", 1),
                        ("--method", "wrap"), ("--closing", 2)):
             self.expect_refusal(*option)
+
+    def test_refusals_name_the_cause_and_what_may_be_written(self):
+        self.expect_refusal("--clearance", "60%", says=("--clearance", "60%", "0.0001% to 50%"))
+        self.expect_refusal("--clearance", "5mm", says=("5mm", "0.0001% to 50%"))
+        self.expect_refusal("--vertices", "2", says=("--vertices", "4 to 100000"))
+        self.expect_refusal("--method", "wrap", says=("wrap", "envelope|boxes|boxes-improved"))
+
+    def test_lengths_are_taken_as_percent_and_as_fraction(self):
+        for option, percent, fraction in (("--clearance", "1.5%", 0.015), ("--closing", "1%", 0.01)):
+            data, _ = self.generate("--vertices", 24, option, percent)
+            self.assertEqual(data["options"][option[2:]], fraction)
+            cage = self.cage.read_bytes()
+            self.generate("--vertices", 24, option, fraction)
+            self.assertEqual(self.cage.read_bytes(), cage)
+
+    def test_options_that_make_no_difference_are_told(self):
+        made = run("generate", self.model, "-o", self.cage, "--method", "boxes", "--depth", 2, "--vertices", 40)
+        self.assertEqual(made.returncode, DONE)
+        self.assertIn("--vertices makes no difference", made.stderr)
+        self.assertEqual(made.stderr.count("\n"), 1)
+
+
+class Boxes(InAFolder):
+    def test_are_meant_where_one_of_their_options_is_given(self):
+        data, text = self.generate("--depth", 2, "--quads")
+        self.assertEqual(data["method"], "boxes")
+        self.assertIn("quads", text)
+        self.assertEqual(len(data["boxes"]), sum(not node["children"] for node in data["tree"]))
+        improved, _ = self.generate("--depth", 2, "--vertices", 30)
+        self.assertEqual(improved["method"], "boxes-improved")
+        self.assertLessEqual(improved["cage"]["vertices"], 30)
+
+    def test_improved_go_by_an_earlier_name_too(self):
+        data, _ = self.generate("--method", "obb", "--vertices", 30)
+        self.assertEqual(data["method"], "boxes-improved")
 
 
 class MaxGap(InAFolder):
@@ -143,7 +190,7 @@ class MaxGap(InAFolder):
         self.assertLess(coarser["cage"]["vertices"], data["cage"]["vertices"])
 
     def test_that_a_limit_does_not_allow_gives_the_nearest_cage_and_says_so(self):
-        data, text = self.generate("--max-gap", "0.5%", "--vertices", 20)
+        data, text = self.generate("--max-gap", "0.5%", "--vertices", 20, ends=NOT_AS_ASKED)
         self.assertFalse(data["budget"]["reached"])
         self.assertLessEqual(data["cage"]["vertices"], 20)
         self.assertGreater(data["budget"]["gap"], 0.005)
@@ -216,7 +263,7 @@ class PiecesApart(InAFolder):
         model = self.file("two.obj", obj(first, torus(16, 8, offset=(3, 0, 0), scale=0.5, first=len(first[0]) + 1)))
         together, _ = self.generate("--vertices", 60, model=model)
         self.assertEqual(together["start"]["bridges"], 1)
-        for method in ("envelope", "obb"):
+        for method in ("envelope", "boxes-improved"):
             data, text = self.generate("--vertices", 60, "--pieces", "apart", "--method", method,
                                        model=model, pieces=True)
             self.assertEqual(data["budget"]["pieces"], 2)

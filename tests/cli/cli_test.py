@@ -73,6 +73,7 @@ class Generate(InAFolder):
 
     def test_says_what_it_did(self):
         made = run("generate", CREATURE, "-o", self.folder / "c.obj", "--resolution", 32, "--depth", 1)
+        self.assertEqual(made.stderr, "")
         for word in ("boxes", "cuts", "vertices", "volume", "mean", "greatest", "least", "time"):
             self.assertIn(word, made.stdout)
         quiet = run("generate", CREATURE, "-o", self.folder / "c.obj", "--depth", 0, "--quiet")
@@ -140,6 +141,7 @@ class Generate(InAFolder):
         voxels = self.folder / "voxels.obj"
         run("generate", CREATURE, "-o", voxels, "--resolution", 16, "--emit", "voxels")
         self.assertIn("o feature", voxels.read_text())
+        self.assertEqual(run("generate", CREATURE, "-o", voxels, "--emit", "2").returncode, BAD_INPUT)
 
     def test_refuses_outputs_that_cannot_be_written_before_it_works(self):
         for output, word in ((self.folder / "cage.xyz", ".obj"), (self.folder, "folder"),
@@ -218,6 +220,13 @@ class Help(unittest.TestCase):
             text = run(command, "--help")
             self.assertEqual(text.returncode, DONE)
             self.assertIn("Usage", text.stdout)
+
+    def test_values_are_shown_as_words_with_examples(self):
+        text = run("generate", "--help").stdout
+        for words in ("envelope|boxes|boxes-improved", "cage|boxes|voxels", "off|auto|x|y|z", "together|apart",
+                      "--clearance PERCENT=0.2%", "--vertices COUNT=100", "Examples:"):
+            self.assertIn(words, text)
+        self.assertNotIn("->", text)
 
     def test_misuse_ends_with_two(self):
         self.assertEqual(run().returncode, BAD_INPUT)
