@@ -1,5 +1,7 @@
 #include <cagewright/cage/density.h>
 
+#include "core/maths.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +32,7 @@ Result<std::vector<double>> painted_density(std::span<const std::array<float, 4>
   for (const std::array<float, 4>& color : colors) {
     const double amount = paint(color);
     is_painted = is_painted || amount != 0;
-    density.push_back(std::pow(strongest, amount));
+    density.push_back(maths::pow(strongest, amount));
   }
   if (!is_painted) {
     return Error{ErrorCode::unfit_model, "no vertex of the model is red (finer) or blue (coarser)"};

@@ -80,7 +80,8 @@ std::vector<Remark> remarks_of(const BudgetCage& made, const GenerateOptions& op
                        "or be too small for the budget",
                        false});
   }
-  std::ranges::stable_partition(remarks, &Remark::is_shortfall);
+  std::stable_partition(remarks.begin(), remarks.end(),
+                        [](const Remark& remark) { return remark.is_shortfall; });
   return remarks;
 }
 

@@ -1,5 +1,6 @@
 #include "cage/improve_to_gap.h"
 
+#include "core/maths.h"
 #include "spatial/bvh.h"
 #include <cagewright/mesh/measures.h>
 
@@ -168,7 +169,8 @@ private:
       if (coarse_ >= limit_) {
         return 0;
       }
-      const double factor = std::clamp(std::pow(coarse_gap_ / max_gap_, 1 / usual_power), 1.2, 6.0);
+      const double factor =
+          std::clamp(maths::pow(coarse_gap_ / max_gap_, 1 / usual_power), 1.2, 6.0);
       return std::min(limit_, static_cast<int>(std::ceil(1.1 * factor * coarse_)));
     }
     if (fine_count_ <= fewest || fine_count_ - 1 <= coarse_ ||
@@ -176,13 +178,14 @@ private:
       return 0;
     }
     if (coarse_ == 0) {
-      const double factor = std::clamp(std::pow(fine_->gap / max_gap_, 1 / usual_power), 0.25, 0.8);
+      const double factor =
+          std::clamp(maths::pow(fine_->gap / max_gap_, 1 / usual_power), 0.25, 0.8);
       return std::max(fewest, static_cast<int>(factor * fine_count_));
     }
     // Between the two, as their gaps say.
-    const double towards =
-        std::log(coarse_gap_ / max_gap_) / std::log(coarse_gap_ / std::min(fine_->gap, max_gap_));
-    const double guess = coarse_ * std::pow(static_cast<double>(fine_count_) / coarse_, towards);
+    const double towards = maths::log(coarse_gap_ / max_gap_) /
+                           maths::log(coarse_gap_ / std::min(fine_->gap, max_gap_));
+    const double guess = coarse_ * maths::pow(static_cast<double>(fine_count_) / coarse_, towards);
     return std::clamp(static_cast<int>(std::lround(guess)),
                       coarse_ + std::max(1, (fine_count_ - coarse_) / 4),
                       fine_count_ - std::max(1, (fine_count_ - coarse_) / 4));

@@ -161,7 +161,8 @@ private:
     made.length = volume / std::max(ring_area * made.width, 1e-300);
     constexpr double least_length = 0.75;
     constexpr double least_rest = 2; // cubes of the ring's size
-    const bool is_limb = made.length > least_length && rest > least_rest * std::pow(ring_area, 1.5);
+    const bool is_limb =
+        made.length > least_length && rest > least_rest * ring_area * std::sqrt(ring_area);
     return is_limb ? std::optional(std::move(made)) : std::nullopt;
   }
 

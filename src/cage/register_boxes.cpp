@@ -1,5 +1,7 @@
 #include "cage/register_boxes.h"
 
+#include "core/maths.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -179,7 +181,7 @@ bool come_near(const Hexahedron& a, const Hexahedron& b, double gap) {
 
 /// The angle between two vectors in radians.
 double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return maths::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 bool is_well_shaped(const Hexahedron& solid, const RegisterOptions& options) {

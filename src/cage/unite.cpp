@@ -1,6 +1,7 @@
 // The one translation unit that uses the GPL packages of CGAL.
 #include "cage/unite.h"
 
+#include "core/maths.h"
 #include "mesh/disjoint_sets.h"
 #include <cagewright/validate/validate_cage.h>
 
@@ -87,7 +88,7 @@ std::vector<double> separations(std::span<const Hexahedron> solids, double separ
   const double count = 1 + *std::max_element(colors.begin(), colors.end());
   std::vector<double> amounts;
   for (const int color : colors) {
-    amounts.push_back(separation * std::pow((color + 1) / count, 1 / (1 + 0.3 * attempt)));
+    amounts.push_back(separation * maths::pow((color + 1) / count, 1 / (1 + 0.3 * attempt)));
   }
   return amounts;
 }

@@ -316,7 +316,7 @@ prepare(TriangleView cage, std::size_t cage_vertices, std::vector<std::array<Ind
   }
   auto tables = std::make_shared<MeanValueSolver::Tables>();
   tables->center = box.center();
-  tables->scale = std::exp2(-std::floor(std::log2(box.diagonal().norm())) - 1);
+  tables->scale = std::ldexp(1.0, -std::ilogb(box.diagonal().norm()) - 1);
   tables->cage_vertices = cage_vertices;
   tables->quads = std::move(quads);
   tables->used = used_vertices(cage);

@@ -1,5 +1,6 @@
 #include <cagewright/deform/normals.h>
 
+#include "core/maths.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -199,7 +200,7 @@ Vec3 NormalField::mean_normal(std::size_t slot, std::span<const Vec3> positions)
       const Vec3& here = positions[corners_[corner]];
       const Vec3 to_next = positions[corners_[begin + (k + 1) % size]] - here;
       const Vec3 to_last = positions[corners_[begin + (k + size - 1) % size]] - here;
-      weight = std::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
+      weight = maths::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
     }
     sum += weight * face_normals_[face];
   }

@@ -1,6 +1,8 @@
 #include <cagewright/deform/standard_poses.h>
 
+#include "core/maths.h"
 #include "core/parallel.h"
+#include "core/rotation.h"
 #include <cagewright/coordinates/mean_value.h>
 #include <cagewright/mesh/measures.h>
 
@@ -23,10 +25,10 @@ Vec3 bent(const PoseFrame& frame, const Vec3& p) {
   const double on_arc = std::clamp(s, -frame.length / 2, frame.length / 2);
   const double angle = right_angle * on_arc / frame.length;
   const double radius = frame.length / right_angle;
-  const Vec3 tangent = std::cos(angle) * frame.along + std::sin(angle) * frame.toward;
-  const Vec3 inward = std::cos(angle) * frame.toward - std::sin(angle) * frame.along;
+  const Vec3 tangent = maths::cos(angle) * frame.along + maths::sin(angle) * frame.toward;
+  const Vec3 inward = maths::cos(angle) * frame.toward - maths::sin(angle) * frame.along;
   const Vec3 spine =
-      radius * (std::sin(angle) * frame.along + (1 - std::cos(angle)) * frame.toward);
+      radius * (maths::sin(angle) * frame.along + (1 - maths::cos(angle)) * frame.toward);
   const Vec3 across = offset - s * frame.along - side * frame.toward;
   return frame.center + spine + (s - on_arc) * tangent + side * inward + across;
 }
@@ -34,7 +36,7 @@ Vec3 bent(const PoseFrame& frame, const Vec3& p) {
 Vec3 twisted(const PoseFrame& frame, const Vec3& p) {
   const Vec3 offset = p - frame.center;
   const double t = std::clamp(offset.dot(frame.along) / frame.length, -0.5, 0.5);
-  return frame.center + Eigen::AngleAxisd(right_angle * t, frame.along) * offset;
+  return frame.center + rotation_about(frame.along, right_angle * t) * offset;
 }
 
 struct Sums {

@@ -1,5 +1,7 @@
 #include "improve/block_program.h"
 
+#include "core/maths.h"
+
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
@@ -70,7 +72,7 @@ public:
       const double after =
           count > 0 ? (s + reach * affine.s).dot(z + reach * affine.z) / static_cast<double>(count)
                     : 0;
-      const double sigma = mu > 0 ? std::pow(after / mu, 3) : 0;
+      const double sigma = mu > 0 ? maths::cube(after / mu) : 0;
       const Step step =
           direction((s.cwiseProduct(z) + affine.s.cwiseProduct(affine.z)).array() - sigma * mu);
       const double longest_step = std::min(longest(s, step.s), longest(z, step.z));

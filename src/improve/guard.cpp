@@ -1,5 +1,6 @@
 #include "improve/guard.h"
 
+#include "core/maths.h"
 #include "exact/predicates.h"
 #include "mesh/disjoint_sets.h"
 #include <cagewright/mesh/measures.h>
@@ -10,6 +11,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <tuple>
 
 namespace cagewright {
 
@@ -37,7 +39,7 @@ std::vector<Index> weld(std::span<const Vec3> positions) {
   const auto before = [&](Index a, Index b) {
     const Vec3& p = positions[a];
     const Vec3& q = positions[b];
-    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+    return std::tuple(p.x(), p.y(), p.z(), a) < std::tuple(q.x(), q.y(), q.z(), b);
   };
   std::sort(order.begin(), order.end(), before);
   std::vector<Index> representative(positions.size());
@@ -203,9 +205,10 @@ void FaceBoxes::find(const Box3& box, std::vector<Index>& found) const {
     unsigned char any = 0;
     for (std::size_t i = 0; i < size; ++i) {
       const std::size_t f = begin + i;
-      hit[i] = static_cast<unsigned char>((low_[0][f] <= high[0]) & (high_[0][f] >= low[0]) &
-                                          (low_[1][f] <= high[1]) & (high_[1][f] >= low[1]) &
-                                          (low_[2][f] <= high[2]) & (high_[2][f] >= low[2]));
+      const auto overlaps = [&](int k) {
+        return static_cast<int>(low_[k][f] <= high[k]) & static_cast<int>(high_[k][f] >= low[k]);
+      };
+      hit[i] = static_cast<unsigned char>(overlaps(0) & overlaps(1) & overlaps(2));
       any |= hit[i];
     }
     for (std::size_t i = 0; any != 0 && i < size; ++i) {
@@ -344,8 +347,8 @@ double solid_angle(const Vec3& p, const Corners& t) {
   const double la = a.norm();
   const double lb = b.norm();
   const double lc = c.norm();
-  return 2 * std::atan2(a.dot(b.cross(c)),
-                        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  return 2 * maths::atan2(a.dot(b.cross(c)),
+                          la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
 double solid_angle(const CageMesh& cage, const Vec3& p, const Corners& t) {

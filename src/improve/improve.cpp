@@ -1,5 +1,6 @@
 #include "improve/improve.h"
 
+#include "core/maths.h"
 #include "improve/refine.h"
 #include "improve/relax.h"
 #include "improve/shave.h"
@@ -90,7 +91,7 @@ public:
     }
     result.report.refine_seconds = seconds_since(middle);
     const double sides = cage_.mesh.is_half() ? 2 : 1;
-    result.report.objective = sides * value / std::pow(surface_.diagonal, 3);
+    result.report.objective = sides * value / maths::cube(surface_.diagonal);
     result.report.reached = cage_.mesh.vertex_count() <= budget_;
     if (!result.report.reached) {
       result.report.why_not =
@@ -308,7 +309,7 @@ private:
     constexpr int attempts = 3;
     constexpr double dearer = 3;
     for (int i = 1; i <= attempts && has_thin_faces() && !progress.cancelled(); ++i) {
-      objective_.weigh_shape(weight * std::pow(dearer, i));
+      objective_.weigh_shape(weight * maths::pow(dearer, i));
       settle(4, progress.part(0.25 * i, 0.25 * (i + 1)));
     }
     round_needles(weight);
@@ -337,7 +338,7 @@ private:
       }
       std::sort(movable.begin(), movable.end());
       movable.erase(std::unique(movable.begin(), movable.end()), movable.end());
-      objective_.weigh_shape(weight * std::pow(dearer, i));
+      objective_.weigh_shape(weight * maths::pow(dearer, i));
       cage_.reach = std::numeric_limits<double>::infinity();
       relax(cage_, guard_, objective_, {.steps = 6, .movable = movable});
     }
@@ -358,7 +359,7 @@ private:
   void coarsen_within_gap(const Progress& progress) {
     const double limit = options_.max_gap * surface_.diagonal;
     // So many vertices are usually too few: gaps fall about with the power 0.8 of their number.
-    const double guess = 1.6 * std::pow(options_.max_gap, -1.25);
+    const double guess = 1.6 * maths::pow(options_.max_gap, -1.25);
     const auto coarse =
         std::clamp(static_cast<std::size_t>(guess), fewest, std::max(fewest, budget_));
     reduce(Placement::outside_patch, careful_from(coarse), progress.part(0, 0.05));

@@ -1,5 +1,6 @@
 #include "improve/refine.h"
 
+#include "core/maths.h"
 #include "core/parallel.h"
 #include "improve/placement.h"
 #include "improve/relax.h"
@@ -151,7 +152,7 @@ bool is_needle(const Corners& t, double least, double diagonal) {
   constexpr double speck = 1e-6;
   const double longest = std::max(
       {(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
-  return shape_quality(t) < least || longest < std::pow(speck * diagonal, 2);
+  return shape_quality(t) < least || longest < maths::square(speck * diagonal);
 }
 
 template <class T> std::vector<T> each_once(std::vector<T> all) {
@@ -211,7 +212,7 @@ std::size_t flip_edges(WorkingCage& cage, const Guard& guard, const Objective& o
                        std::size_t most_valence) {
   std::size_t total = 0;
   // Within a plane both diagonals are as good but for rounding: no going to and fro.
-  const double least_gain = 1e-9 * std::pow(objective.diagonal(), 3);
+  const double least_gain = 1e-9 * maths::cube(objective.diagonal());
   for (;;) {
     const CageMesh& mesh = cage.mesh;
     const std::vector<double> values = objective.face_values(mesh);
@@ -340,7 +341,7 @@ bool split_tip(WorkingCage& cage, const Guard& guard, const Objective& objective
 std::size_t mend_needles(WorkingCage& cage, const Guard& guard, const Objective& objective,
                          double least, std::size_t most_valence) {
   const CageMesh& mesh = cage.mesh;
-  const double any_cost = std::pow(objective.diagonal(), 3) * objective.weights().typical_emphasis;
+  const double any_cost = maths::cube(objective.diagonal()) * objective.weights().typical_emphasis;
   std::vector<double> values;
   const auto rounder = [&](Patch patch, const Edge& edge) -> std::optional<Change> {
     std::ptrdiff_t needles = 0; // more than before

@@ -1,5 +1,7 @@
 #include "mesh/shapes.h"
 
+#include "core/maths.h"
+
 #include <array>
 #include <cmath>
 #include <map>
@@ -94,8 +96,8 @@ TriangleMesh make_torus(double tube, Index around, Index across) {
     const double u = 2 * std::numbers::pi * i / around;
     for (Index j = 0; j < across; ++j) {
       const double v = 2 * std::numbers::pi * j / across;
-      const double r = 1 + tube * std::cos(v);
-      torus.positions.emplace_back(r * std::cos(u), r * std::sin(u), tube * std::sin(v));
+      const double r = 1 + tube * maths::cos(v);
+      torus.positions.emplace_back(r * maths::cos(u), r * maths::sin(u), tube * maths::sin(v));
     }
   }
   for (Index i = 0; i < around; ++i) {

@@ -1,6 +1,8 @@
 #include "obb/minimum_box.h"
 
+#include "core/maths.h"
 #include "core/random.h"
+#include "core/rotation.h"
 #include "obb/principal_axes.h"
 #include <cagewright/mesh/measures.h>
 
@@ -106,8 +108,8 @@ Mat3 random_frame(Random& random) {
   const double r = random.uniform();
   const double a = random.uniform(0, 2 * std::numbers::pi);
   const double b = random.uniform(0, 2 * std::numbers::pi);
-  const Eigen::Quaterniond q(std::sqrt(1 - r) * std::sin(a), std::sqrt(1 - r) * std::cos(a),
-                             std::sqrt(r) * std::sin(b), std::sqrt(r) * std::cos(b));
+  const Eigen::Quaterniond q(std::sqrt(1 - r) * maths::sin(a), std::sqrt(1 - r) * maths::cos(a),
+                             std::sqrt(r) * maths::sin(b), std::sqrt(r) * maths::cos(b));
   return q.normalized().toRotationMatrix();
 }
 
@@ -152,14 +154,16 @@ public:
   // core (which for polyhedra is often an edge), and the best frame so far turned a little.
   Mat3 random_start(int kind, Random& random) const {
     const Mat3 any = random_frame(random);
-    const Vec3 d = core_[random.below(core_.size())] - core_[random.below(core_.size())];
+    const Vec3& from = core_[random.below(core_.size())];
+    const Vec3 d = core_[random.below(core_.size())] - from;
     if (kind % 3 == 1 && d.norm() > negligible) {
       const Vec3 axis = d.normalized();
       const Vec3 other = axis.unitOrthogonal();
       return (Mat3() << axis, other, axis.cross(other)).finished();
     }
     if (kind % 3 == 2) {
-      return Eigen::AngleAxisd(0.3 * random.uniform() * random.uniform(), any.col(0)) * axes_;
+      const double most = random.uniform(0, 0.3);
+      return rotation_about(any.col(0), random.uniform(0, most)) * axes_;
     }
     return any;
   }

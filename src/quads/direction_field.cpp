@@ -1,5 +1,7 @@
 #include "quads/direction_field.h"
 
+#include "core/maths.h"
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -23,10 +25,15 @@ Tangents tangents(const Vec3& normal) {
   return {x, normal.cross(x)};
 }
 
+// Not std::abs, which is the C library's hypot.
+double length(const Complex& z) {
+  return std::sqrt(z.real() * z.real() + z.imag() * z.imag());
+}
+
 Complex in_plane(const Tangents& frame, const Vec3& v) {
   const Complex z(frame.x.dot(v), frame.y.dot(v));
-  const double length = std::abs(z);
-  return length > 0 ? z / length : Complex(0);
+  const double size = length(z);
+  return size > 0 ? z / size : Complex(0);
 }
 
 Vec3 area_of(std::span<const Vec3> x, const Triangle& t) {
@@ -74,7 +81,7 @@ DirectionField::DirectionField(TriangleView cage)
       const CageFace& face = mesh.face(other);
       const Vec3 n = area_of(x, {face[0], face[1], face[2]});
       const Vec3 edge = x[b] - x[a];
-      const double bend = std::atan2(m.cross(n).dot(edge.normalized()), m.dot(n));
+      const double bend = maths::atan2(m.cross(n).dot(edge.normalized()), m.dot(n));
       const Mat3 part = bend / std::max(edge.norm(), 1e-300) * edge * edge.transpose();
       own[a] += part;
       own[b] += part;
@@ -99,7 +106,7 @@ DirectionField::DirectionField(TriangleView cage)
     const double xy = entry(frames[v].x, frames[v].y);
     const double mean = (xx + yy) / 2;
     const Complex twice((xx - yy) / 2, xy); // turns by twice the angle
-    const double size = std::abs(twice);
+    const double size = length(twice);
     clarity_[v] = size > 0 ? size / (size + std::abs(mean)) : 0;
     seen[v] = size > 0 ? clarity_[v] * (twice / size) * (twice / size) : Complex(0);
   }
@@ -117,22 +124,22 @@ DirectionField::DirectionField(TriangleView cage)
       }
       sum /= static_cast<double>(std::max<std::size_t>(1, neighbors[v].size()));
       field[v] = seen[v] + sum;
-      const double size = std::abs(field[v]);
+      const double size = length(field[v]);
       field[v] = size > 1 ? field[v] / size : field[v];
     }
   }
   for (std::size_t v = 0; v < count; ++v) {
-    const double angle = std::arg(field[v]) / 4;
-    directions_[v] = std::cos(angle) * frames[v].x + std::sin(angle) * frames[v].y;
-    clarity_[v] = std::min(1.0, std::abs(field[v]));
+    const double angle = maths::atan2(field[v].imag(), field[v].real()) / 4;
+    directions_[v] = maths::cos(angle) * frames[v].x + maths::sin(angle) * frames[v].y;
+    clarity_[v] = std::min(1.0, length(field[v]));
   }
 }
 
 double DirectionField::misalignment_at(Index v, const Vec3& way) const {
   const Vec3& n = normals_[v];
   const Vec3 y = n.cross(directions_[v]);
-  const double along = std::pow(directions_[v].dot(way), 2);
-  const double across = std::pow(y.dot(way), 2);
+  const double along = maths::square(directions_[v].dot(way));
+  const double across = maths::square(y.dot(way));
   const double length = along + across;
   if (!(length > 0)) {
     return 0;

@@ -1,5 +1,6 @@
 #include "quads/grid_quads.h"
 
+#include "core/maths.h"
 #include "quads/exchange_loops.h"
 #include "quads/grid_layout.h"
 #include "quads/quad_weights.h"
@@ -71,7 +72,7 @@ Result<Blocks> blocks(TriangleView model, const SolidGridOptions& fine,
   if (progress.cancelled()) {
     return Error::cancelled();
   }
-  return Blocks{surface_of(layout, *solid, fine.half), layout.volume * std::pow(solid->size(), 3)};
+  return Blocks{surface_of(layout, *solid, fine.half), layout.volume * maths::cube(solid->size())};
 }
 
 /// In the axes that need less volume: the model's own, or if they are much better the principal

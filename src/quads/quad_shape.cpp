@@ -1,5 +1,6 @@
 #include "quads/quad_shape.h"
 
+#include "core/maths.h"
 #include "improve/objective.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 constexpr double degrees = 180 / std::numbers::pi;
 
 double angle_between(const Vec3& m, const Vec3& n) {
-  return std::atan2(m.cross(n).norm(), m.dot(n)) * degrees;
+  return maths::atan2(m.cross(n).norm(), m.dot(n)) * degrees;
 }
 
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -41,7 +42,7 @@ QuadShape shape_of(const QuadCorners& q) {
     Vec3 last = q[(i + 3) % 4] - q[i];
     next -= next.dot(n) * n;
     last -= last.dot(n) * n;
-    double angle = std::atan2(next.cross(last).dot(n), next.dot(last)) * degrees;
+    double angle = maths::atan2(next.cross(last).dot(n), next.dot(last)) * degrees;
     angle = angle < 0 ? angle + 360 : angle;
     shape.min_angle_degrees = std::min(shape.min_angle_degrees, angle);
     shape.max_angle_degrees = std::max(shape.max_angle_degrees, angle);
@@ -95,12 +96,12 @@ double face_defect(std::span<const Vec3> positions, const CageFace& face,
   if (!shape.within(limits)) {
     return unfit;
   }
-  const auto off_square = [](double angle) { return std::pow((angle - 90) / 45, 2); };
+  const auto off_square = [](double angle) { return maths::square((angle - 90) / 45); };
   const auto side = [&](int i) { return (q[(i + 1) % 4] - q[i]).norm(); };
-  const double stretch = std::log((side(0) + side(2)) / (side(1) + side(3)));
+  const double stretch = maths::log((side(0) + side(2)) / (side(1) + side(3)));
   return wishes.angle *
              (off_square(shape.min_angle_degrees) + off_square(shape.max_angle_degrees)) +
-         wishes.bend * std::pow(shape.bend_degrees / 20, 2) + wishes.stretch * stretch * stretch;
+         wishes.bend * maths::square(shape.bend_degrees / 20) + wishes.stretch * stretch * stretch;
 }
 
 } // namespace cagewright

@@ -1,5 +1,6 @@
 #include "quads/relax_quads.h"
 
+#include "core/maths.h"
 #include "core/parallel.h"
 #include "improve/block_program.h"
 #include "improve/face_terms.h"
@@ -32,7 +33,7 @@ struct QuadTerms {
     const double e = diagonals[1].squaredNorm();
     squared = std::max((d + e) / 2, 1e-300);
     unequal = (d - e) / squared;
-    warp = six_volumes(q) / std::pow(squared, 1.5);
+    warp = six_volumes(q) / (squared * std::sqrt(squared));
     excess = std::copysign(std::max(0.0, std::abs(warp) - options.free_warp), warp);
     normal = diagonals[0].cross(diagonals[1]);
     normal /= std::max(normal.norm(), 1e-300);
@@ -352,7 +353,7 @@ private:
       }
     }
     if (terms.excess != 0) {
-      const double scale = 1 / std::pow(terms.squared, 1.5);
+      const double scale = 1 / (terms.squared * std::sqrt(terms.squared));
       std::array<Vec3, 4> slope;
       slope[1] = scale * (q[2] - q[0]).cross(q[3] - q[0]);
       slope[2] = scale * (q[3] - q[0]).cross(q[1] - q[0]);
@@ -398,7 +399,7 @@ private:
       mean += p[i] / 4;
     }
     if (mean > 0 && *std::min_element(p.begin(), p.end()) > 0.05 * mean) {
-      const double sine = std::sin(within * std::min(89.0, limits.max_bend_degrees) * radians);
+      const double sine = maths::sin(within * std::min(89.0, limits.max_bend_degrees) * radians);
       const double most = sine * std::min(doubled[1] * doubled[3] / (q[2] - q[0]).norm(),
                                           doubled[0] * doubled[2] / (q[3] - q[1]).norm());
       const double v = six_volumes(q);

@@ -299,8 +299,8 @@ private:
       volume_now += volume_from(origin, cage_.face(f));
       area += area_vector(cage_.positions(), cage_.face(f)).norm() / 2;
     }
-    const double volume_cost =
-        taste_.volume / std::max(std::pow(area / static_cast<double>(region.size()), 1.5), 1e-300);
+    const double face_area = area / static_cast<double>(region.size());
+    const double volume_cost = taste_.volume / std::max(face_area * std::sqrt(face_area), 1e-300);
     now += volume_cost * volume_now;
     const TilingTable& table = tilings_[ring.size() - 4];
     std::vector<Known> known(table.faces.size());

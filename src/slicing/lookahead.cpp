@@ -1,5 +1,6 @@
 #include "slicing/lookahead.h"
 
+#include "core/maths.h"
 #include "slicing/volume_rule.h"
 
 #include <algorithm>
@@ -36,7 +37,8 @@ Lookahead::Lookahead(const VoxelGrid& grid, std::span<const std::uint32_t> voxel
                      const OrientedBox& box, bool split_parts, double padding)
     : box_(box), split_parts_(split_parts), padding_(padding) {
   const double ratio = static_cast<double>(voxels.size()) / coarse_voxels;
-  const int factor = std::clamp(static_cast<int>(std::lround(std::cbrt(ratio))), 1, coarsest);
+  const int factor =
+      std::clamp(static_cast<int>(std::lround(maths::pow(ratio, 1.0 / 3))), 1, coarsest);
   const auto cell_of = [&](std::uint32_t voxel) {
     const Cell c = grid.cell(voxel);
     return Cell{c[0] / factor, c[1] / factor, c[2] / factor};

@@ -139,7 +139,7 @@ private:
     if (!box.isEmpty()) {
       bvh_.origin_ = box.center();
       const double half = box.sizes().maxCoeff() / 2;
-      bvh_.scale_ = half > 0 && std::isfinite(half) ? std::exp2(-std::ilogb(half) - 1) : 1;
+      bvh_.scale_ = half > 0 && std::isfinite(half) ? std::ldexp(1.0, -std::ilogb(half) - 1) : 1;
     }
     parallel_for(0, count, 4096, [&](std::size_t i) {
       const Triangle& t = mesh.triangles[i];
@@ -241,7 +241,9 @@ private:
     const std::size_t middle = begin + (end - begin) / 2;
     const auto at = [&](std::size_t k) { return items_.begin() + static_cast<std::ptrdiff_t>(k); };
     std::nth_element(at(begin), at(middle), at(end), [axis](const Item& a, const Item& b) {
-      return a.twice_middle(axis) < b.twice_middle(axis);
+      const float at_a = a.twice_middle(axis);
+      const float at_b = b.twice_middle(axis);
+      return at_a != at_b ? at_a < at_b : a.id() < b.id();
     });
     return middle;
   }

@@ -1,5 +1,6 @@
 #include "symmetry/mirror_plane.h"
 
+#include "core/maths.h"
 #include "core/parallel.h"
 #include "spatial/bvh.h"
 #include <cagewright/mesh/measures.h>
@@ -349,7 +350,7 @@ std::vector<Vec3> normals_to_try(const Surface& surface) {
     const double z = (i + 0.5) / directions;
     const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
     const double r = std::sqrt(1 - z * z);
-    normals.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+    normals.emplace_back(r * maths::cos(angle), r * maths::sin(angle), z);
   }
   return normals;
 }

@@ -1,5 +1,6 @@
 #include <cagewright/validate/cage_metrics.h>
 
+#include "core/maths.h"
 #include "core/parallel.h"
 #include "spatial/bvh.h"
 #include <cagewright/mesh/measures.h>
@@ -131,7 +132,7 @@ double min_dihedral(TriangleView cage) {
     if (sides[i].low == sides[i - 1].low && sides[i].high == sides[i - 1].high) {
       const Vec3 n = triangle_normal(cage, cage.triangles[sides[i - 1].face]);
       const Vec3 m = triangle_normal(cage, cage.triangles[sides[i].face]);
-      widest = std::max(widest, std::atan2(n.cross(m).norm(), n.dot(m)));
+      widest = std::max(widest, maths::atan2(n.cross(m).norm(), n.dot(m)));
     }
   }
   return 180 - widest * 180 / std::numbers::pi;

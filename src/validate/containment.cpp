@@ -1,5 +1,6 @@
 #include "validate/containment.h"
 
+#include "core/maths.h"
 #include "core/random.h"
 #include "exact/predicates.h"
 #include <cagewright/mesh/measures.h>
@@ -16,7 +17,8 @@ Vec3 far_point(const Vec3& p, const Box3& box, int attempt) {
   Random random(static_cast<std::uint64_t>(attempt) + 1);
   Vec3 direction;
   for (double& x : direction) {
-    x = random.uniform(0.25, 1) * (random.below(2) == 0 ? 1 : -1);
+    x = random.uniform(0.25, 1);
+    x = random.below(2) == 0 ? x : -x;
   }
   direction[attempt % 3] *= 4;
   const double reach = 2 * (box.diagonal().norm() + (p - box.center()).norm());
@@ -161,7 +163,7 @@ double Containment::solid_angle(const Vec3& p, unsigned cutting) const {
     const double lb = b.norm();
     const double lc = c.norm();
     const double divisor = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    sum += weights_[i] * 2 * std::atan2(a.dot(b.cross(c)), divisor);
+    sum += weights_[i] * 2 * maths::atan2(a.dot(b.cross(c)), divisor);
   }
   return sum;
 }

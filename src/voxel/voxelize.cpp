@@ -89,12 +89,14 @@ Result<VoxelGrid> make_grid(TriangleView mesh, const OrientedBox& frame,
   return grid;
 }
 
-// Threads may mark the same voxel at once, but all write the same value.
-void mark(VoxelGrid& grid, const Triangle& t, std::span<const Vec3> positions, double grow) {
+// Threads may mark the same voxel at once.
+using Marks = std::vector<std::atomic<bool>>;
+
+void mark(const VoxelGrid& grid, const Triangle& t, std::span<const Vec3> positions, double grow,
+          Marks& marks) {
   const TriangleOverlap overlap(positions[t[0]], positions[t[1]], positions[t[2]], grow);
   overlap.for_each_cell([&](const std::array<int, 3>& cell) {
-    std::atomic_ref(grid.kinds[grid.index(cell)])
-        .store(VoxelKind::feature, std::memory_order_relaxed);
+    marks[grid.index(cell)].store(true, std::memory_order_relaxed);
   });
 }
 
@@ -117,13 +119,19 @@ void mark_features(TriangleView mesh, VoxelGrid& grid, double grow, const Progre
   parallel_for(0, positions.size(), 4096,
                [&](std::size_t i) { positions[i] = grid.to_grid(mesh.positions[i]); });
   const std::vector<Triangle> strays = stray_vertices(mesh);
+  Marks marks(grid.kinds.size());
   for (const std::span<const Triangle> triangles :
        {mesh.triangles, std::span<const Triangle>(strays)}) {
     parallel_for(0, triangles.size(), 256, [&](std::size_t t) {
       if (!progress.cancelled()) {
-        mark(grid, triangles[t], positions, grow);
+        mark(grid, triangles[t], positions, grow, marks);
       }
     });
+  }
+  for (std::size_t v = 0; v < marks.size(); ++v) {
+    if (marks[v].load(std::memory_order_relaxed)) {
+      grid.kinds[v] = VoxelKind::feature;
+    }
   }
 }
 
