@@ -1,5 +1,6 @@
 #include "app/main_window.h"
 
+#include "app/document/selected_vertices.h"
 #include "app/panels/figures_panel.h"
 #include "app/panels/generate_panel.h"
 #include "app/panels/guide_bar.h"
@@ -12,6 +13,7 @@
 #include "app/theme.h"
 #include "app/view/viewport.h"
 
+#include <QAbstractSpinBox>
 #include <QApplication>
 #include <QCloseEvent>
 #include <QDockWidget>
@@ -19,16 +21,20 @@
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QLabel>
+#include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
 #include <QProgressBar>
+#include <QPushButton>
 #include <QScreen>
 #include <QScrollArea>
 #include <QSettings>
+#include <QSlider>
 #include <QStatusBar>
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
@@ -98,10 +104,19 @@ MainWindow::MainWindow(const QDir& recovery_folder, QWidget* parent)
   apply(preferences_);
   update_title();
   update_actions();
+  // Clicks leave the focus where it is: with the view.
+  for (QAbstractButton* button : findChildren<QAbstractButton*>()) {
+    button->setFocusPolicy(Qt::TabFocus);
+  }
+  for (QSlider* slider : findChildren<QSlider*>()) {
+    slider->setFocusPolicy(Qt::TabFocus);
+  }
   viewport_->setFocus();
+  qApp->installEventFilter(this);
 }
 
 MainWindow::~MainWindow() {
+  qApp->removeEventFilter(this);
   disconnect(&session_, nullptr, this, nullptr);
   disconnect(&session_.document(), nullptr, this, nullptr);
   disconnect(&session_.jobs(), nullptr, this, nullptr);
@@ -123,7 +138,6 @@ void MainWindow::make_panels() {
   layout->addWidget(guide_);
   viewport_ = new Viewport(session_.editor());
   viewport_->setObjectName("viewport");
-  viewport_->installEventFilter(this);
   layout->addWidget(viewport_, 1);
   setCentralWidget(middle);
 
@@ -147,6 +161,7 @@ void MainWindow::make_panels() {
   time_line_ = new TimeLinePanel(session_.editor());
   sections_ = new SectionsPanel(session_.document());
   auto* figures = new FiguresPanel(session_.document());
+  connect(figures, &FiguresPanel::violationChosen, this, &MainWindow::show_violation);
   auto* selection = new SelectionPanel(session_.editor());
   dock(this, "dock_generate", tr("Make a Cage"), generate_, Qt::LeftDockWidgetArea, false);
   QDockWidget* figures_dock =
@@ -222,6 +237,14 @@ void MainWindow::connect_session() {
               session_.open_project_with_model(project.toStdString(), chosen.toStdString());
             }
           });
+  session_.set_asker([this](const Question& question) {
+    QMessageBox box(QMessageBox::Question, question.title, question.text, QMessageBox::Cancel,
+                    this);
+    const QAbstractButton* go_on = box.addButton(question.go_on, QMessageBox::AcceptRole);
+    box.exec();
+    return box.clickedButton() == go_on;
+  });
+  connect(&session_, &Session::bindingDoubtful, this, &MainWindow::ask_about_binding);
   session_.set_camera_source([this] { return viewport_->camera_state(); });
 
   JobRunner& jobs = session_.jobs();
@@ -294,6 +317,64 @@ void MainWindow::show_error(const QString& title, const QString& text) {
   box->open(); // not modal for the program: jobs go on
 }
 
+void MainWindow::ask_about_binding(const std::shared_ptr<const ValidityReport>& report) {
+  QStringList found;
+  for (std::size_t k = 0; k < violation_kinds; ++k) {
+    if (report->counts[k] > 0) {
+      found.append(describe(static_cast<ViolationKind>(k), report->counts[k]));
+    }
+  }
+  auto* box = new QMessageBox(
+      QMessageBox::Warning, tr("Bind"),
+      tr("This is not a valid cage of the model: parts of the model may not follow it, or follow "
+         "wrongly.<ul><li>%1</li></ul>")
+          .arg(found.join("</li><li>")),
+      QMessageBox::NoButton, this);
+  box->setObjectName("binding_question");
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  const auto offer = [&](const char* name, const QString& text, QMessageBox::ButtonRole role,
+                         const std::function<void()>& act) {
+    QPushButton* button = box->addButton(text, role);
+    button->setObjectName(name);
+    connect(button, &QPushButton::clicked, this, act);
+    return button;
+  };
+  const auto any = [&](std::initializer_list<ViolationKind> kinds) {
+    return std::ranges::any_of(kinds, [&](ViolationKind k) { return report->count(k) > 0; });
+  };
+  using enum ViolationKind;
+  if (any({open_edge, coincident_vertices, unused_vertex, degenerate_face})) {
+    offer("weld", tr("Weld"), QMessageBox::ActionRole, [this] {
+      session_.weld_cage_and_bind();
+    })->setToolTip(tr("Makes vertices in one place one vertex"));
+  }
+  if (any({inverted_piece, flipped_edge})) {
+    offer("turn_outward", tr("Turn Inside Out"), QMessageBox::ActionRole, [this] {
+      session_.turn_cage_outward_and_bind();
+    })->setToolTip(tr("Turns all faces outward"));
+  }
+  offer("show_problem", tr("Show the Problem"), QMessageBox::ActionRole,
+        [this, report] { show_violation(report->violations.front()); });
+  offer("bind_anyway", tr("Bind Anyway"), QMessageBox::AcceptRole,
+        [this] { session_.bind(Session::Doubts::ignore); });
+  QPushButton* cancel = box->addButton(QMessageBox::Cancel);
+  box->setDefaultButton(cancel);
+  box->open();
+}
+
+void MainWindow::show_violation(const Violation& violation) {
+  Document& document = session_.document();
+  Layers layers = document.layers();
+  layers.problems = true;
+  document.set_layers(layers);
+  if (document.has_cage()) {
+    if (const std::optional<Selection> at = selection_at(violation, document.cage_rest())) {
+      session_.editor().select(*at);
+    }
+  }
+  viewport_->frame_place(violation.place);
+}
+
 void MainWindow::open(const QString& path, const QString& cage) {
   if (may_discard()) {
     session_.open(path.toStdString(), cage.toStdString());
@@ -302,17 +383,23 @@ void MainWindow::open(const QString& path, const QString& cage) {
 
 void MainWindow::offer_recovery() {
   for (const QString& path : recovery_.abandoned()) {
-    const auto answer = QMessageBox::question(
-        this, tr("Recover"),
-        tr("The program did not end as it should. Work on %1, of %2, was kept. Go on with it?")
+    QMessageBox box(
+        QMessageBox::Question, tr("Recover Work"),
+        tr("The program did not end as it should. Work on %1 was kept, as it was at "
+           "%2.")
             .arg(Recovery::subject_of(path),
                  QLocale().toString(QFileInfo(path).lastModified(), QLocale::ShortFormat)),
-        QMessageBox::Yes | QMessageBox::No | QMessageBox::Discard, QMessageBox::Yes);
-    if (answer == QMessageBox::Yes) {
+        QMessageBox::NoButton, this);
+    const QAbstractButton* recover = box.addButton(tr("Recover It"), QMessageBox::AcceptRole);
+    const QAbstractButton* forget = box.addButton(tr("Delete It"), QMessageBox::DestructiveRole);
+    QPushButton* later = box.addButton(tr("Ask Again Next Time"), QMessageBox::RejectRole);
+    box.setEscapeButton(later);
+    box.exec();
+    if (box.clickedButton() == recover) {
       recovery_.recover(path);
       return;
     }
-    if (answer == QMessageBox::Discard) {
+    if (box.clickedButton() == forget) {
       Recovery::discard(path);
     }
   }
@@ -356,7 +443,65 @@ void MainWindow::dropEvent(QDropEvent* event) {
       this, [this, file] { open(file); }, Qt::QueuedConnection);
 }
 
+/// Keys belong to the view wherever a click has left the focus, but for what is typed, and for what
+/// moves about in lists.
+bool MainWindow::is_for_view(const QWidget* focus, const QKeyEvent& key) const {
+  if (focus == viewport_ || focus->window() != this ||
+      QApplication::activeModalWidget() != nullptr ||
+      QApplication::activePopupWidget() != nullptr || qobject_cast<const QMenuBar*>(focus)) {
+    return false;
+  }
+  const Qt::KeyboardModifiers modifiers = key.modifiers() & ~Qt::ShiftModifier;
+  const bool letter = key.key() >= Qt::Key_A && key.key() <= Qt::Key_Z;
+  const bool sign = key.key() == Qt::Key_Space || key.key() == Qt::Key_Slash ||
+                    key.key() == Qt::Key_BracketLeft || key.key() == Qt::Key_BracketRight;
+  if (qobject_cast<const QAbstractSpinBox*>(focus) ||
+      qobject_cast<const QAbstractSpinBox*>(focus->parentWidget())) {
+    return modifiers == Qt::NoModifier && (letter || sign); // its numbers stay its own
+  }
+  if (focus->testAttribute(Qt::WA_InputMethodEnabled)) {
+    return false; // text
+  }
+  if (key.key() == Qt::Key_Space && qobject_cast<const QAbstractButton*>(focus)) {
+    return false; // reached by Tab: clicks do not give buttons the focus
+  }
+  const bool digit = key.key() >= Qt::Key_0 && key.key() <= Qt::Key_9;
+  return letter || sign || digit || key.key() == Qt::Key_Escape || key.key() == Qt::Key_Delete ||
+         key.key() == Qt::Key_Plus || key.key() == Qt::Key_Minus || key.key() == Qt::Key_Equal;
+}
+
 bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
+  switch (event->type()) {
+  case QEvent::ShortcutOverride:
+  case QEvent::KeyPress:
+  case QEvent::KeyRelease: {
+    const auto* widget = qobject_cast<QWidget*>(watched);
+    // What the view does not want goes on to its parents.
+    if (widget != nullptr && !passes_on_key_ &&
+        is_for_view(widget, *static_cast<QKeyEvent*>(event))) {
+      viewport_->setFocus(Qt::ShortcutFocusReason); // before shortcuts are looked for
+      passes_on_key_ = true;
+      QCoreApplication::sendEvent(viewport_, event);
+      passes_on_key_ = false;
+      return true;
+    }
+    break;
+  }
+  case QEvent::Enter:
+  case QEvent::MouseMove:
+    if (watched == viewport_ && isActiveWindow() && !viewport_->hasFocus() &&
+        QApplication::activePopupWidget() == nullptr) {
+      const QWidget* focus = focusWidget();
+      const bool types = focus != nullptr && focus->testAttribute(Qt::WA_InputMethodEnabled) &&
+                         qobject_cast<const QAbstractSpinBox*>(focus) == nullptr;
+      if (!types || event->type() == QEvent::Enter) {
+        viewport_->setFocus(Qt::MouseFocusReason);
+      }
+    }
+    break;
+  default:
+    break;
+  }
   if (watched == viewport_) {
     if (event->type() == QEvent::Resize) {
       welcome_->setGeometry(viewport_->rect());

@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 
+class QKeyEvent;
 class QLabel;
 class QMenu;
 class QProgressBar;
@@ -87,6 +88,10 @@ private:
   /// Whether what is open may be replaced: saved, or not worth it.
   bool may_discard();
   void show_error(const QString& title, const QString& text);
+  /// The cage that is to be bound is no valid one: says what is wrong, and offers what helps.
+  void ask_about_binding(const std::shared_ptr<const ValidityReport>& report);
+  /// Selects what is wrong, and brings it into view.
+  void show_violation(const Violation& violation);
   void show_recent();
   void update_title();
   void update_actions();
@@ -94,6 +99,7 @@ private:
   void show_first_steps();
   void show_keys();
   void reset_panels();
+  [[nodiscard]] bool is_for_view(const QWidget* focus, const QKeyEvent& key) const;
 
   Session session_;
   Preferences preferences_;
@@ -114,6 +120,7 @@ private:
   QProgressBar* progress_ = nullptr;
   QToolButton* cancel_ = nullptr;
   QByteArray first_layout_;
+  bool passes_on_key_ = false; ///< to the view
   struct Need {
     QAction* action;
     std::function<bool()> met;

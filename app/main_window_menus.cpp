@@ -288,13 +288,24 @@ void MainWindow::make_cage_menu() {
   QAction* refine =
       add(menu, "refine_cage", tr("&Refine"), {"Ctrl+Shift+B"},
           tr("Unties the model, to edit the cage itself"), [this] { session_.refine(); });
+  QAction* switch_mode = add_in_view(menu, "switch_mode", tr("Refine or De&form"), {"Tab"},
+                                     tr("From refining the cage to deforming the model, and back"),
+                                     [this] { session_.switch_mode(); });
   QAction* cancel = add(menu, "cancel_job", tr("&Cancel"), {"Ctrl+."},
                         tr("Stops what is under way"), [this] { session_.cancel(); });
   menu->addSeparator();
   using enum CageAction;
   add_action(menu, split, tr("&Split Edges"), {}, tr("A new vertex in the middle of each edge"));
-  add_action(menu, split_ring, tr("Split &Ring"), {"Ctrl+R"},
-             tr("A loop of edges through the middle of a run of quads"));
+  QAction* loop_cut = add_in_view(menu, "loop_cut", tr("&Loop Cut"), {"Ctrl+R"},
+                                  tr("Cuts a ring of quads: point at an edge, the wheel says how "
+                                     "often; click, slide, click"),
+                                  [this] { viewport_->begin_loop_cut(); });
+  needs_.push_back({loop_cut, [this] {
+                      const Document& d = session_.document();
+                      return d.has_cage() && d.mode() == Mode::refine;
+                    }});
+  add_action(menu, split_ring, tr("Split &Rings"), {},
+             tr("A loop of edges through the middle of the run of quads of each selected edge"));
   add_action(menu, collapse, tr("C&ollapse"), {}, tr("Draws the selected edges together"));
   add_action(menu, flip, tr("&Flip Edge"), {}, tr("The other diagonal of two triangles"));
   add_action(menu, subdivide, tr("S&ubdivide"), {}, tr("Cuts each face in four"));
@@ -310,6 +321,10 @@ void MainWindow::make_cage_menu() {
   needs_.push_back({bind, [this, free] {
                       const Document& d = session_.document();
                       return free() && d.has_model() && d.has_cage() && d.mode() == Mode::refine;
+                    }});
+  needs_.push_back({switch_mode, [this, free] {
+                      return free() && session_.document().has_model() &&
+                             session_.document().has_cage();
                     }});
   needs_.push_back({refine, [this] { return session_.document().mode() == Mode::deform; }});
   needs_.push_back({cancel, [this] { return session_.jobs().busy(); }});

@@ -68,9 +68,14 @@ std::vector<QString> Recovery::abandoned() const {
 
 QString Recovery::subject_of(const QString& path) {
   const Result<Project> project = read_project(path.toStdString());
-  return project && !project->model_path.empty()
-             ? QString::fromStdString(project->model_path.filename().string())
-             : tr("a project");
+  if (!project) {
+    return tr("a project that was not saved");
+  }
+  const QString model = QString::fromStdString(project->model_path.filename().string());
+  return project->saved_as.empty()
+             ? tr("%1, not saved as a project yet").arg(model)
+             : tr("the project %1 (model %2)")
+                   .arg(QString::fromStdString(project->saved_as.string()), model);
 }
 
 void Recovery::recover(const QString& path) {

@@ -31,7 +31,7 @@ public:
 
   /// Files that programs left which are no longer running, the newest first.
   [[nodiscard]] std::vector<QString> abandoned() const;
-  /// The name of the model that the work is on.
+  /// The path of the project that the work belongs to, and the name of the model: for people.
   static QString subject_of(const QString& path);
   /// Goes on with it; the file goes as soon as the work is kept as this program's own.
   void recover(const QString& path);

@@ -2,6 +2,7 @@
 
 #include "app/document/binding.h"
 #include "app/document/time_line.h"
+#include "app/edit/repair_cage.h"
 #include "app/jobs/work.h"
 #include <cagewright/io/write_mesh.h>
 
@@ -25,6 +26,16 @@ bool is_project(const fs::path& path) {
   return QString::fromStdString(path.extension().string()).toLower() == ".cagewright";
 }
 
+/// Pieces apart are no fault here: each moves what is in it.
+bool binds_well(const ValidityReport& report) {
+  for (std::size_t k = 0; k < violation_kinds; ++k) {
+    if (report.counts[k] > 0 && static_cast<ViolationKind>(k) != ViolationKind::several_pieces) {
+      return false;
+    }
+  }
+  return true;
+}
+
 SharedPositions shared(std::span<const Vec3> positions) {
   return std::make_shared<const std::vector<Vec3>>(positions.begin(), positions.end());
 }
@@ -44,6 +55,12 @@ Session::Session(QObject* parent)
   connect(&jobs_, &JobRunner::cancelled, this,
           [this](const QString& title) { Q_EMIT message(tr("%1: cancelled").arg(title)); });
   connect(&editor_, &Editor::message, this, &Session::message);
+  connect(&jobs_, &JobRunner::finished, this, [this] {
+    if (waiting_ && !jobs_.busy()) {
+      Waiting next = *std::exchange(waiting_, std::nullopt);
+      start(next.title, std::move(next.work));
+    }
+  });
   connect(&editor_.undo_stack(), &QUndoStack::cleanChanged, this, &Session::titleChanged);
 }
 
@@ -54,12 +71,49 @@ void Session::set_settings(const GenerateSettings& settings) {
   Q_EMIT settingsChanged();
 }
 
-bool Session::start(const QString& title, Job::Work work) {
+bool Session::start(const QString& title, Job::Work work, Kind kind) {
   if (jobs_.run(title, std::move(work))) {
+    under_way_ = kind;
     return true;
   }
   Q_EMIT message(tr("Wait for \"%1\" to end, or cancel it").arg(jobs_.title()));
   return false;
+}
+
+void Session::start_next(const QString& title, Job::Work work) {
+  if (!jobs_.busy()) {
+    start(title, std::move(work));
+    return;
+  }
+  waiting_.emplace(Waiting{title, std::move(work)});
+  if (under_way_ == Kind::writes) {
+    Q_EMIT message(tr("%1: comes next, when \"%2\" is done").arg(title, jobs_.title()));
+  } else {
+    Q_EMIT message(tr("%1: comes next, \"%2\" is being cancelled").arg(title, jobs_.title()));
+    jobs_.cancel();
+  }
+}
+
+bool Session::may_replace_cage(const QString& title, const QString& go_on) {
+  const State& state = document_.state();
+  const std::size_t poses = state.poses.size();
+  const std::size_t keys = state.time_line.keys.size();
+  QStringList lost;
+  if (editor_.deformation_is_unkept()) {
+    lost.append(tr("the deformation of the model"));
+  }
+  if (poses > 0) {
+    lost.append(poses == 1 ? tr("a pose") : tr("%1 poses").arg(poses));
+  }
+  if (keys > 0) {
+    lost.append(keys == 1 ? tr("a keyframe") : tr("%1 keyframes").arg(keys));
+  }
+  return !ask_ || lost.empty() ||
+         ask_({title,
+               tr("Another cage has other vertices: what fits the present one goes with it (%1). "
+                  "Undo brings it back.")
+                   .arg(lost.join(tr(", "))),
+               go_on});
 }
 
 bool Session::report(const QString& title, const Status& status) {
@@ -76,7 +130,7 @@ void Session::open(const fs::path& path, const fs::path& cage) {
     open_project(path, {}, false);
     return;
   }
-  start(tr("Open"), [this, path, cage](const Progress& progress) -> Result<Job::Apply> {
+  start_next(tr("Open"), [this, path, cage](const Progress& progress) -> Result<Job::Apply> {
     Result<std::shared_ptr<const Model>> model = app::open_model(path, progress.part(0, 0.9));
     if (!model) {
       return model.error();
@@ -109,7 +163,10 @@ void Session::open(const fs::path& path, const fs::path& cage) {
 }
 
 void Session::load_cage(const fs::path& path) {
-  start(tr("Load Cage"), [this, path](const Progress&) -> Result<Job::Apply> {
+  if (!may_replace_cage(tr("Load Cage"), tr("Load It"))) {
+    return;
+  }
+  start_next(tr("Load Cage"), [this, path](const Progress&) -> Result<Job::Apply> {
     Result<std::shared_ptr<const PolygonMesh>> mesh = read_cage(path);
     if (!mesh) {
       return mesh.error();
@@ -147,42 +204,53 @@ void Session::open_project(const fs::path& path, const fs::path& model_path, boo
                         QString::fromStdString(read->model_path.string()));
     return;
   }
-  start(tr("Open Project"),
-        [this, path, recovered, project = *read](const Progress& progress) -> Result<Job::Apply> {
-          std::shared_ptr<const Model> model;
-          std::shared_ptr<const Binding> binding;
-          if (!project.model_path.empty()) {
-            Result<std::shared_ptr<const Model>> opened =
-                app::open_model(project.model_path, progress.part(0, 0.4));
-            if (!opened) {
-              return opened.error();
-            }
-            model = *opened;
+  start_next(
+      tr("Open Project"),
+      [this, path, recovered, project = *read](const Progress& progress) -> Result<Job::Apply> {
+        std::shared_ptr<const Model> model;
+        std::shared_ptr<const Binding> binding;
+        if (!project.model_path.empty()) {
+          Result<std::shared_ptr<const Model>> opened =
+              app::open_model(project.model_path, progress.part(0, 0.4));
+          if (!opened) {
+            return opened.error();
           }
-          if (project.bound && model) {
-            Result<std::shared_ptr<const Binding>> bound =
-                bind_model(*model, *project.state.rest, progress.part(0.4, 1));
-            if (!bound) {
-              return bound.error();
-            }
-            binding = *bound;
+          model = *opened;
+        }
+        if (project.bound && model) {
+          Result<std::shared_ptr<const Binding>> bound =
+              bind_model(*model, *project.state.rest, progress.part(0.4, 1));
+          if (!bound) {
+            return bound.error();
           }
-          return Job::Apply([this, path, recovered, project, model, binding] {
-            restore(project, model, binding);
-            project_path_ = recovered ? fs::path() : path;
-            modified_ = recovered;
-            Q_EMIT titleChanged();
-            if (!recovered) {
-              Q_EMIT opened(QString::fromStdString(path.string()));
+          binding = *bound;
+        }
+        return Job::Apply([this, path, recovered, project, model, binding] {
+          restore(project, model, binding);
+          project_path_ = recovered ? project.saved_as : path;
+          modified_ = recovered;
+          Q_EMIT titleChanged();
+          if (!recovered) {
+            Q_EMIT opened(QString::fromStdString(path.string()));
+          }
+          if (model && model->checksum != project.model_checksum) {
+            Q_EMIT failed(tr("Open Project"),
+                          tr("The model %1 has changed since the project was saved. The cage "
+                             "may no longer fit it.")
+                              .arg(name_of(project.model_path)));
+          }
+          if (!project.notes.empty()) {
+            QStringList notes;
+            for (const std::string& note : project.notes) {
+              notes.append(QString::fromStdString(note));
             }
-            if (model && model->checksum != project.model_checksum) {
-              Q_EMIT failed(tr("Open Project"),
-                            tr("The model %1 has changed since the project was saved. The cage "
-                               "may no longer fit it.")
-                                .arg(name_of(project.model_path)));
-            }
-          });
+            Q_EMIT failed(tr("Open Project"),
+                          tr("%1 is open, but for what its file says of the view:\n%2\nThe "
+                             "usual is used instead.")
+                              .arg(name_of(path), notes.join("\n")));
+          }
         });
+      });
 }
 
 void Session::restore(const Project& project, std::shared_ptr<const Model> model,
@@ -203,6 +271,9 @@ void Session::restore(const Project& project, std::shared_ptr<const Model> model
 void Session::generate() {
   if (!document_.has_model()) {
     Q_EMIT message(tr("Open a model first"));
+    return;
+  }
+  if (!may_replace_cage(tr("Generate Cage"), tr("Generate"))) {
     return;
   }
   start(tr("Generate"),
@@ -246,15 +317,33 @@ void Session::make_stages() {
         });
 }
 
-void Session::bind() {
+void Session::bind(Doubts doubts) {
   if (!document_.has_model() || !document_.has_cage() || document_.mode() == Mode::deform) {
     Q_EMIT message(tr("Binding needs a model and a cage"));
     return;
   }
   auto rest = std::make_shared<const PolygonMesh>(document_.cage());
+  const CageCheck& check = document_.check();
+  const bool known = check.state == CageCheck::State::done && check.report &&
+                     check.report->valid() && !checker_.busy();
+  const bool judges = doubts == Doubts::tell && !known;
   start(tr("Bind"),
-        [this, model = document_.model(), rest,
-         cage = document_.state().cage](const Progress& progress) -> Result<Job::Apply> {
+        [this, judges, model = document_.model(), rest,
+         cage = document_.state().cage](const Progress& whole) -> Result<Job::Apply> {
+          if (judges) {
+            Result<JudgedCage> judged = judge_cage(*rest, model.get(), whole.part(0, 0.3));
+            if (!judged) {
+              return judged.error();
+            }
+            if (!binds_well(*judged->report)) {
+              return Job::Apply([this, report = judged->report] {
+                // Not before the job has ended: what is answered may start another.
+                QMetaObject::invokeMethod(
+                    this, [this, report] { Q_EMIT bindingDoubtful(report); }, Qt::QueuedConnection);
+              });
+            }
+          }
+          const Progress progress = whole.part(judges ? 0.3 : 0, 1);
           Result<std::shared_ptr<const Binding>> binding = bind_model(*model, *rest, progress);
           if (!binding) {
             return binding.error();
@@ -272,6 +361,33 @@ void Session::bind() {
 
 void Session::refine() {
   editor_.refine();
+}
+
+void Session::switch_mode() {
+  if (document_.mode() == Mode::deform) {
+    refine();
+  } else {
+    bind();
+  }
+}
+
+void Session::weld_cage_and_bind() {
+  if (document_.has_cage()) {
+    // Near enough to be one vertex, and far less than a cage has between two.
+    constexpr double tolerance = 1e-4;
+    const PolygonMesh welded = welded_cage(document_.cage(), tolerance * document_.diagonal());
+    editor_.replace_cage(std::make_shared<const PolygonMesh>(welded), nullptr, tr("Weld Cage"));
+    bind();
+  }
+}
+
+void Session::turn_cage_outward_and_bind() {
+  if (document_.has_cage()) {
+    const PolygonMesh turned = turned_outward(document_.cage());
+    editor_.replace_cage(std::make_shared<const PolygonMesh>(turned), nullptr,
+                         tr("Turn Cage Inside Out"));
+    bind();
+  }
 }
 
 // ---- Keeping
@@ -318,7 +434,9 @@ bool Session::save_project(const fs::path& path) {
 }
 
 Status Session::autosave(const fs::path& path) {
-  return write_project(project(), path);
+  Project kept = project();
+  kept.saved_as = project_path_;
+  return write_project(kept, path);
 }
 
 bool Session::save_cage(const fs::path& path) {
@@ -346,20 +464,22 @@ void Session::start_export(const QString& title, std::vector<fs::path> paths,
   for (std::size_t i = 0; i < paths.size(); ++i) {
     outputs.push_back({std::move(paths[i]), std::move(poses[i])});
   }
-  start(title,
-        [this, outputs, model = document_.model(),
-         rest = document_.state().rest](const Progress& progress) -> Result<Job::Apply> {
-          if (Status s = export_models(*model, *rest, outputs, progress); !s) {
-            return s.error();
-          }
-          return Job::Apply([this, outputs] {
-            Q_EMIT message(outputs.size() == 1 ? tr("Wrote %1").arg(name_of(outputs.front().path))
-                                               : tr("Wrote %L1 files, %2 to %3")
-                                                     .arg(outputs.size())
-                                                     .arg(name_of(outputs.front().path),
-                                                          name_of(outputs.back().path)));
-          });
+  start(
+      title,
+      [this, outputs, model = document_.model(),
+       rest = document_.state().rest](const Progress& progress) -> Result<Job::Apply> {
+        if (Status s = export_models(*model, *rest, outputs, progress); !s) {
+          return s.error();
+        }
+        return Job::Apply([this, outputs] {
+          Q_EMIT message(outputs.size() == 1 ? tr("Wrote %1").arg(name_of(outputs.front().path))
+                                             : tr("Wrote %L1 files, %2 to %3")
+                                                   .arg(outputs.size())
+                                                   .arg(name_of(outputs.front().path),
+                                                        name_of(outputs.back().path)));
         });
+      },
+      Kind::writes);
 }
 
 void Session::export_model(const fs::path& path) {
@@ -407,14 +527,16 @@ void Session::export_weights(const fs::path& path) {
   }
   const PolygonMesh cage =
       document_.mode() == Mode::deform ? document_.cage_rest() : document_.cage();
-  start(tr("Export Weights"),
-        [this, path, cage,
-         model = document_.model()](const Progress& progress) -> Result<Job::Apply> {
-          if (Status s = app::export_weights(*model, cage, path, progress); !s) {
-            return s.error();
-          }
-          return Job::Apply([this, path] { Q_EMIT message(tr("Wrote %1").arg(name_of(path))); });
-        });
+  start(
+      tr("Export Weights"),
+      [this, path, cage,
+       model = document_.model()](const Progress& progress) -> Result<Job::Apply> {
+        if (Status s = app::export_weights(*model, cage, path, progress); !s) {
+          return s.error();
+        }
+        return Job::Apply([this, path] { Q_EMIT message(tr("Wrote %1").arg(name_of(path))); });
+      },
+      Kind::writes);
 }
 
 } // namespace cagewright::app

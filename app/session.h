@@ -20,6 +20,13 @@
 
 namespace cagewright::app {
 
+/// Something to be decided before work goes on.
+struct Question {
+  QString title;
+  QString text;
+  QString go_on; ///< what the button says; the other one cancels
+};
+
 /// One document and all that works on it. What takes time runs as a job and leaves the window
 /// usable; a failure becomes a sentence for failed(), never more.
 class Session final : public QObject {
@@ -50,11 +57,22 @@ public:
 
   // ---- Working
 
+  /// Who is asked before something goes that took work to make; nobody: it goes on.
+  void set_asker(std::function<bool(const Question&)> ask) { ask_ = std::move(ask); }
+
   void generate();
   /// Splits the model into boxes, to look at.
   void make_stages();
-  void bind();
+  enum class Doubts { tell, ignore };
+  /// Judges the cage first: unless doubts are ignored, one that is not valid becomes
+  /// bindingDoubtful(), and nothing is bound.
+  void bind(Doubts doubts = Doubts::tell);
   void refine();
+  /// Refine mode becomes deform mode, and back.
+  void switch_mode();
+  /// What bindingDoubtful() may be answered by. Each changes the cage, and binds again.
+  void weld_cage_and_bind();
+  void turn_cage_outward_and_bind();
   void cancel() { jobs_.cancel(); }
 
   // ---- Keeping
@@ -89,6 +107,8 @@ Q_SIGNALS:
   void cameraRestored(const QJsonObject& camera);
   /// The model of a project is not where it was, or is another one.
   void modelMissing(const QString& project, const QString& model);
+  /// The cage is not a valid one of the model, or not at all: ask, and bind() again.
+  void bindingDoubtful(const std::shared_ptr<const cagewright::ValidityReport>& report);
 
 private:
   [[nodiscard]] Project project() const;
@@ -98,7 +118,13 @@ private:
                std::shared_ptr<const Binding> binding);
   void start_export(const QString& title, std::vector<std::filesystem::path> paths,
                     std::vector<SharedPositions> poses);
-  bool start(const QString& title, Job::Work work);
+  enum class Kind { replaceable, writes };
+  bool start(const QString& title, Job::Work work, Kind kind = Kind::replaceable);
+  /// The same, but what is under way makes room: it is cancelled, or, where it writes files, ended
+  /// first.
+  void start_next(const QString& title, Job::Work work);
+  /// Asks whether poses and deformations that only fit the present cage may go.
+  [[nodiscard]] bool may_replace_cage(const QString& title, const QString& go_on);
   bool report(const QString& title, const Status& status);
 
   Document document_;
@@ -110,6 +136,13 @@ private:
   std::filesystem::path project_path_;
   bool modified_ = false; // what the undo stack does not know: recovered work
   std::function<QJsonObject()> camera_;
+  std::function<bool(const Question&)> ask_;
+  Kind under_way_ = Kind::replaceable;
+  struct Waiting {
+    QString title;
+    Job::Work work;
+  };
+  std::optional<Waiting> waiting_; // for the job under way to end
 };
 
 /// PATH with something between stem and extension: "a/b.obj", "-01" gives "a/b-01.obj". What files

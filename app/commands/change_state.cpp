@@ -8,12 +8,24 @@ ChangeState::ChangeState(Document& document, State before, State after, const QS
     : QUndoCommand(text), document_(document), before_(std::move(before)),
       after_(std::move(after)) {}
 
+ChangeState::ChangeState(Document& document, State before, State after, const QString& text,
+                         const Shown& shown_before)
+    : ChangeState(document, std::move(before), std::move(after), text) {
+  shown_before_ = shown_before;
+}
+
 void ChangeState::undo() {
   document_.set_state(before_);
+  if (shown_before_) {
+    document_.set_shown(*shown_before_);
+  }
 }
 
 void ChangeState::redo() {
   document_.set_state(after_);
+  if (shown_before_) {
+    document_.set_shown({});
+  }
 }
 
 } // namespace cagewright::app

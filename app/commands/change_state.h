@@ -6,6 +6,8 @@
 
 #include <QUndoCommand>
 
+#include <optional>
+
 namespace cagewright::app {
 
 /// Takes the document from one state to another, and back. States share what they have in common,
@@ -13,6 +15,9 @@ namespace cagewright::app {
 class ChangeState final : public QUndoCommand {
 public:
   ChangeState(Document& document, State before, State after, const QString& text);
+  /// \param shown_before  what was shown then, for changes of what is shown: undo shows it again
+  ChangeState(Document& document, State before, State after, const QString& text,
+              const Shown& shown_before);
 
   void undo() override;
   void redo() override;
@@ -21,6 +26,7 @@ private:
   Document& document_;
   State before_;
   State after_;
+  std::optional<Shown> shown_before_;
 };
 
 } // namespace cagewright::app

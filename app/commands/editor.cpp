@@ -3,6 +3,7 @@
 #include "app/commands/change_state.h"
 #include "app/document/time_line.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace cagewright::app {
@@ -26,18 +27,29 @@ SharedPositions moved_along(const SharedPositions& pose, const std::vector<Vec3>
 Editor::Editor(Document& document, QObject* parent)
     : QObject(parent), document_(document), live_check_(document) {
   undo_stack_.setUndoLimit(500);
+  // What was in the making when something was undone is over.
+  connect(&undo_stack_, &QUndoStack::indexChanged, this, [this] {
+    if (move_) {
+      live_check_.end();
+    }
+    move_.reset();
+    step_.reset();
+  });
 }
 
 Editor::~Editor() = default;
 
 void Editor::begin_move(std::vector<Index> vertices) {
   cancel_move();
-  move_.emplace(Move{std::move(vertices), document_.state()});
+  move_.emplace(Move{std::move(vertices), document_.state(), document_.shown()});
   document_.adopt_shown_cage();
   live_check_.begin();
 }
 
 void Editor::move_to(std::span<const Vec3> positions) {
+  if (!move_) {
+    return; // another change has taken it back
+  }
   document_.move_cage(move_->vertices, live_check_.move(move_->vertices, positions));
   if (live_check_.stopped()) {
     Q_EMIT message(tr("Stopped where the cage would become invalid"));
@@ -50,15 +62,42 @@ void Editor::end_move(const QString& text) {
   }
   Move move = *std::exchange(move_, std::nullopt);
   live_check_.end();
-  if (move.before.cage != document_.state().cage) {
-    undo_stack_.push(new ChangeState(document_, std::move(move.before), document_.state(), text));
+  if (!step_ && move.before.cage != document_.state().cage) {
+    undo_stack_.push(new ChangeState(document_, std::move(move.before), document_.state(), text,
+                                     move.shown_before));
   }
 }
 
 void Editor::cancel_move() {
   if (move_) {
     live_check_.end();
-    document_.set_state(std::exchange(move_, std::nullopt)->before);
+    const Move move = *std::exchange(move_, std::nullopt);
+    document_.set_state(move.before);
+    document_.set_shown(move.shown_before);
+  }
+}
+
+void Editor::begin_step() {
+  cancel_move();
+  cancel_step();
+  step_.emplace(Step{document_.state(), document_.shown()});
+}
+
+void Editor::end_step(const QString& text) {
+  if (!step_) {
+    return;
+  }
+  Step step = *std::exchange(step_, std::nullopt);
+  undo_stack_.push(new ChangeState(document_, std::move(step.before), document_.state(), text,
+                                   step.shown_before));
+}
+
+void Editor::cancel_step() {
+  if (step_) {
+    cancel_move();
+    const Step step = *std::exchange(step_, std::nullopt);
+    document_.set_state(step.before);
+    document_.set_shown(step.shown_before);
   }
 }
 
@@ -130,9 +169,32 @@ void Editor::refine() {
   if (!state.binding) {
     return;
   }
+  if (deformation_is_unkept()) {
+    const QString name = free_pose_name(tr("Last pose"));
+    state.poses.push_back({name, state.cage});
+    Q_EMIT message(tr("The deformation is kept as the pose \"%1\"").arg(name));
+  }
   state.binding.reset();
   state.cage = std::make_shared<const std::vector<Vec3>>(state.rest->positions);
   change(std::move(state), tr("Refine Cage"));
+}
+
+bool Editor::deformation_is_unkept() const {
+  const State& state = document_.state();
+  const auto same = [&](const std::vector<Vec3>& positions) { return positions == *state.cage; };
+  return state.binding && !same(state.rest->positions) &&
+         std::ranges::none_of(state.poses, [&](const Pose& p) { return same(*p.positions); }) &&
+         std::ranges::none_of(state.time_line.keys,
+                              [&](const Keyframe& k) { return same(*k.positions); });
+}
+
+QString Editor::free_pose_name(const QString& name) const {
+  const auto& poses = document_.state().poses;
+  QString free = name;
+  for (int n = 2; std::ranges::any_of(poses, [&](const Pose& p) { return p.name == free; }); ++n) {
+    free = tr("%1 %2").arg(name).arg(n);
+  }
+  return free;
 }
 
 void Editor::reset_pose() {
@@ -203,7 +265,14 @@ void Editor::set_time_line(TimeLine time_line, const QString& text) {
 }
 
 void Editor::change(State state, const QString& text) {
+  if (move_ && step_) { // this one is none of its parts
+    cancel_step();
+  }
   cancel_move();
+  if (step_) {
+    document_.set_state(state);
+    return;
+  }
   undo_stack_.push(new ChangeState(document_, document_.state(), std::move(state), text));
 }
 

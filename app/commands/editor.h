@@ -51,6 +51,14 @@ public:
   /// A movement in one step, as by numbers that are typed.
   void move(std::vector<Index> vertices, std::span<const Vec3> positions, const QString& text);
 
+  // ---- Several changes as one step
+
+  /// What is changed from now on becomes one step of undo by end_step(), or is taken back by
+  /// cancel_step().
+  void begin_step();
+  void end_step(const QString& text);
+  void cancel_step();
+
   // ---- The cage as a whole
 
   /// Another selection.
@@ -64,10 +72,14 @@ public:
   /// To deform mode: `rest` is the cage that the binding was made for, with the topology of the
   /// present one. Poses and keyframes keep what they move from the rest, wherever that is now.
   void bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const PolygonMesh> rest);
-  /// Back to refine mode, with the cage at rest. Poses and keyframes stay while the topology does.
+  /// Back to refine mode, with the cage at rest. Poses and keyframes stay while the topology does;
+  /// a deformation that is none of them becomes the pose "Last pose".
   void refine();
 
   // ---- Poses, in deform mode
+
+  /// Whether the cage is deformed as no pose and no keyframe has it.
+  [[nodiscard]] bool deformation_is_unkept() const;
 
   void reset_pose();
   void add_pose(const QString& name);
@@ -91,15 +103,22 @@ Q_SIGNALS:
 
 private:
   void tell_of_lost_poses();
+  [[nodiscard]] QString free_pose_name(const QString& name) const;
 
   struct Move {
     std::vector<Index> vertices;
     State before;
+    Shown shown_before;
+  };
+  struct Step {
+    State before;
+    Shown shown_before;
   };
 
   Document& document_;
   QUndoStack undo_stack_;
   std::optional<Move> move_;
+  std::optional<Step> step_;
   LiveCheck live_check_;
 };
 

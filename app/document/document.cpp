@@ -136,25 +136,28 @@ void Document::set_comparing(bool comparing) {
 }
 
 void Document::set_blend(double blend) {
-  if (blend != blend_) {
-    blend_ = blend;
-    update_shown();
-    Q_EMIT viewStateChanged();
-    Q_EMIT cageMoved();
-  }
+  set_shown({blend, time_});
 }
 
 void Document::set_time(std::optional<double> frame) {
-  if (frame != time_) {
-    time_ = frame;
-    update_shown();
-    Q_EMIT viewStateChanged();
-    Q_EMIT cageMoved();
+  set_shown({blend_, frame});
+}
+
+void Document::set_shown(const Shown& shown) {
+  if (shown == this->shown() && (!shown.time || *shown.time == frame_)) {
+    return;
   }
+  blend_ = shown.blend;
+  time_ = shown.time;
+  frame_ = time_.value_or(frame_);
+  update_shown();
+  Q_EMIT viewStateChanged();
+  Q_EMIT cageMoved();
 }
 
 void Document::adopt_shown_cage() {
   if (!shown_) {
+    time_.reset(); // a time line without keyframes shows the pose
     return;
   }
   state_.cage = shown_;
@@ -189,6 +192,7 @@ void Document::update_shown() {
 
 void Document::set_model(std::shared_ptr<const Model> model) {
   set_state({});
+  frame_ = state_.time_line.first;
   model_ = std::move(model);
   deformed_.reset();
   set_metrics({});
@@ -237,6 +241,7 @@ void Document::set_state(const State& state) {
     Q_EMIT posesChanged();
   }
   if (!same_time_line(state_.time_line, old.time_line)) {
+    frame_ = std::clamp<double>(frame_, state_.time_line.first, state_.time_line.last);
     Q_EMIT timeLineChanged();
   }
 }

@@ -34,6 +34,13 @@ struct CageCheck {
   std::shared_ptr<const ValidityReport> report; ///< the last complete one; may be of an older cage
 };
 
+/// Which of the states between which one can look is shown.
+struct Shown {
+  double blend = 1;
+  std::optional<double> time = {};
+  friend bool operator==(const Shown&, const Shown&) = default;
+};
+
 /// One document of the application.
 ///
 /// Views read it and listen to its signals. What is undoable (State) is changed through Editor
@@ -115,9 +122,15 @@ public:
   /// Shows the way from the rest (0) to the pose (1).
   void set_blend(double blend);
   [[nodiscard]] double blend() const { return blend_; }
-  /// Shows the time line at a frame (not necessarily whole); nothing: the edited pose.
+  /// Goes to a frame (not necessarily whole) and shows the time line there; nothing: shows the
+  /// edited pose, and stays at the frame.
   void set_time(std::optional<double> frame);
   [[nodiscard]] const std::optional<double>& time() const { return time_; }
+  /// The frame it stands at, whatever is shown: keyframes are set there.
+  [[nodiscard]] double frame() const { return frame_; }
+  /// blend() and time(), to come back to what was seen.
+  [[nodiscard]] Shown shown() const { return {blend_, time_}; }
+  void set_shown(const Shown& shown);
   /// Makes what is shown what is edited, so that a drag begins with what the user sees.
   void adopt_shown_cage();
 
@@ -152,7 +165,7 @@ Q_SIGNALS:
   void toolsChanged();
   void posesChanged();
   void timeLineChanged();  ///< keyframes or range
-  void viewStateChanged(); ///< comparing(), blend() or time()
+  void viewStateChanged(); ///< comparing(), blend(), time() or frame()
 
 private:
   void update_shown();
@@ -171,6 +184,7 @@ private:
   bool comparing_ = false;
   double blend_ = 1;
   std::optional<double> time_;
+  double frame_ = 1;
 };
 
 } // namespace cagewright::app

@@ -5,6 +5,7 @@
 #include <QFile>
 #include <QJsonArray>
 #include <QJsonDocument>
+#include <QLocale>
 
 #include <algorithm>
 #include <cmath>
@@ -40,53 +41,58 @@ QJsonArray faces_to_json(const PolygonMesh& mesh) {
   return json;
 }
 
-/// Switches and numbers of a struct under their names, for writing and for reading alike.
+/// Where a number may lie.
+struct Range {
+  double least = 0;
+  double most = 0;
+};
+
+// Beyond these, squares of coordinates are no numbers any more.
+constexpr Range coordinates = {-1e50, 1e50};
+constexpr Range no_range = {};
+
+/// Switches and numbers of a struct under their names, for writing and for reading alike; numbers
+/// with their range.
 template <class Visit> void visit(Layers& l, const Visit& field) {
-  field("model", l.model);
-  field("smooth_normals", l.smooth_normals);
-  field("wireframe", l.wireframe);
-  field("cage_edges", l.cage_edges);
-  field("cage_faces", l.cage_faces);
-  field("cage_vertices", l.cage_vertices);
-  field("rest_cage", l.rest_cage);
-  field("boxes", l.boxes);
-  field("feature_voxels", l.feature_voxels);
-  field("inner_voxels", l.inner_voxels);
-  field("cuts", l.cuts);
-  field("problems", l.problems);
-  field("weights", l.weights);
-  field("distance", l.distance);
-  field("grid", l.grid);
-  field("depth", l.depth);
+  field("model", l.model, no_range);
+  field("smooth_normals", l.smooth_normals, no_range);
+  field("wireframe", l.wireframe, no_range);
+  field("cage_edges", l.cage_edges, no_range);
+  field("cage_faces", l.cage_faces, no_range);
+  field("cage_vertices", l.cage_vertices, no_range);
+  field("rest_cage", l.rest_cage, no_range);
+  field("boxes", l.boxes, no_range);
+  field("feature_voxels", l.feature_voxels, no_range);
+  field("inner_voxels", l.inner_voxels, no_range);
+  field("cuts", l.cuts, no_range);
+  field("problems", l.problems, no_range);
+  field("weights", l.weights, no_range);
+  field("distance", l.distance, no_range);
+  field("grid", l.grid, no_range);
+  field("depth", l.depth, Range{-1, 1000});
 }
 
 template <class Visit> void visit(ToolSettings& t, const Visit& field) {
-  field("tool", t.tool);
-  field("axes", t.axes);
-  field("pivot", t.pivot);
-  field("see_through", t.see_through);
-  field("snap", t.snap);
-  field("snap_step", t.snap_step);
-  field("snap_angle_degrees", t.snap_angle_degrees);
-  field("snap_scale", t.snap_scale);
-  field("proportional", t.proportional);
-  field("proportional_radius", t.proportional_radius);
-  field("falloff", t.falloff);
-  field("connected_only", t.connected_only);
-  field("symmetric", t.symmetric);
-  field("symmetry_axis", t.symmetry_axis);
-  field("stop_at_contact", t.stop_at_contact);
+  field("tool", t.tool, Range{0, static_cast<double>(Tool::scale)});
+  field("axes", t.axes, Range{0, static_cast<double>(AxesKind::view)});
+  field("pivot", t.pivot, Range{0, static_cast<double>(Pivot::individual)});
+  field("see_through", t.see_through, no_range);
+  field("snap", t.snap, no_range);
+  field("snap_step", t.snap_step, Range{1e-6, 10});
+  field("snap_angle_degrees", t.snap_angle_degrees, Range{1e-3, 360});
+  field("snap_scale", t.snap_scale, Range{1e-6, 100});
+  field("proportional", t.proportional, no_range);
+  field("proportional_radius", t.proportional_radius, Range{1e-3, 10});
+  field("falloff", t.falloff, Range{0, static_cast<double>(Falloff::sharp)});
+  field("connected_only", t.connected_only, no_range);
+  field("symmetric", t.symmetric, no_range);
+  field("symmetry_axis", t.symmetry_axis, Range{0, 2});
+  field("stop_at_contact", t.stop_at_contact, no_range);
 }
-
-template <class T> constexpr int last_of = 0;
-template <> constexpr int last_of<Tool> = static_cast<int>(Tool::scale);
-template <> constexpr int last_of<AxesKind> = static_cast<int>(AxesKind::view);
-template <> constexpr int last_of<Pivot> = static_cast<int>(Pivot::individual);
-template <> constexpr int last_of<Falloff> = static_cast<int>(Falloff::sharp);
 
 template <class T> QJsonObject fields_to_json(T values) {
   QJsonObject json;
-  visit(values, [&](const char* name, const auto& value) {
+  visit(values, [&](const char* name, const auto& value, const Range&) {
     using V = std::decay_t<decltype(value)>;
     if constexpr (std::is_enum_v<V>) {
       json[QLatin1String(name)] = static_cast<int>(value);
@@ -97,32 +103,75 @@ template <class T> QJsonObject fields_to_json(T values) {
   return json;
 }
 
-template <class T> T fields_from_json(const QJsonObject& json) {
+Error malformed(const fs::path& path, const std::string& what) {
+  return {ErrorCode::malformed, path.string() + ": " + what};
+}
+
+/// Shortest digits that read back as the same number.
+std::string to_text(double number) {
+  return QString::number(number, 'g', QLocale::FloatingPointShortest).toStdString();
+}
+
+/// What is wrong with a number, if anything is.
+std::optional<std::string> fault_of(const QJsonValue& json, const std::string& name,
+                                    const Range& range, bool whole) {
+  const double number = json.toDouble(std::numeric_limits<double>::quiet_NaN());
+  if (number >= range.least && number <= range.most && (!whole || number == std::floor(number))) {
+    return std::nullopt;
+  }
+  return name + " is " + (json.isDouble() ? to_text(number) : std::string("not a number")) +
+         "; it has to be " + (whole ? "a whole number " : "") + "from " + to_text(range.least) +
+         " to " + to_text(range.most);
+}
+
+/// How things are shown is not worth losing work over: what is out of range keeps its default, and
+/// is noted.
+template <class T>
+T fields_from_json(const QJsonObject& json, const std::string& where,
+                   std::vector<std::string>& notes) {
   T values;
-  visit(values, [&](const char* name, auto& value) {
+  visit(values, [&](const char* name, auto& value, const Range& range) {
     using V = std::decay_t<decltype(value)>;
     const QJsonValue stored = json[QLatin1String(name)];
-    if constexpr (std::is_enum_v<V>) {
-      const int number = stored.toInt(static_cast<int>(value));
-      if (number >= 0 && number <= last_of<V>) {
-        value = static_cast<V>(number);
-      }
-    } else if constexpr (std::is_same_v<V, bool>) {
+    if (stored.isUndefined()) {
+      return;
+    }
+    if constexpr (std::is_same_v<V, bool>) {
       value = stored.toBool(value);
-    } else if constexpr (std::is_same_v<V, int>) {
-      value = stored.toInt(value);
+    } else if (const auto fault =
+                   fault_of(stored, where + name, range, !std::is_same_v<V, double>)) {
+      notes.push_back(*fault);
     } else {
-      value = stored.toDouble(value);
+      value = static_cast<V>(stored.toDouble());
     }
   });
   return values;
 }
 
-Error malformed(const fs::path& path, const std::string& what) {
-  return {ErrorCode::malformed, path.string() + ": " + what};
+/// A camera, if its numbers are those of one.
+QJsonObject camera_from(const QJsonObject& json, std::vector<std::string>& notes) {
+  const std::pair<const char*, Range> numbers[] = {
+      {"distance", {1e-50, 1e50}}, {"yaw_degrees", {-360, 360}}, {"pitch_degrees", {-90, 90}}};
+  std::optional<std::string> fault;
+  for (const auto& [name, range] : numbers) {
+    const QJsonValue stored = json[QLatin1String(name)];
+    if (!fault && !stored.isUndefined()) {
+      fault = fault_of(stored, std::string("view.camera.") + name, range, false);
+    }
+  }
+  for (const QJsonValue& part : json["target"].toArray()) {
+    if (!fault) {
+      fault = fault_of(part, "view.camera.target", coordinates, false);
+    }
+  }
+  if (fault) {
+    notes.push_back(*fault);
+    return {};
+  }
+  return json;
 }
 
-/// Positions, all finite; nothing where they are not.
+/// Positions, all within range; nothing where they are not.
 std::optional<std::vector<Vec3>> positions_from(const QJsonValue& json) {
   std::vector<Vec3> positions;
   if (!json.isArray()) {
@@ -134,7 +183,7 @@ std::optional<std::vector<Vec3>> positions_from(const QJsonValue& json) {
       return std::nullopt;
     }
     positions.emplace_back(xyz[0].toDouble(), xyz[1].toDouble(), xyz[2].toDouble());
-    if (!positions.back().allFinite()) {
+    if (!(positions.back().cwiseAbs().maxCoeff() <= coordinates.most)) {
       return std::nullopt;
     }
   }
@@ -144,7 +193,7 @@ std::optional<std::vector<Vec3>> positions_from(const QJsonValue& json) {
 Status read_cage(const QJsonObject& json, const fs::path& path, State& state) {
   auto vertices = positions_from(json["vertices"]);
   if (!vertices) {
-    return malformed(path, "the cage's vertices are not triples of numbers");
+    return malformed(path, "the cage's vertices are not triples of numbers from -1e50 to 1e50");
   }
   PolygonMesh mesh;
   mesh.positions = *std::move(vertices);
@@ -175,7 +224,8 @@ Result<SharedPositions> read_pose(const QJsonValue& json, const State& state,
                                   const fs::path& path) {
   auto positions = positions_from(json);
   if (!positions || !state.rest || positions->size() != state.rest->positions.size()) {
-    return malformed(path, "a pose does not have as many vertices as the cage");
+    return malformed(path, "a pose does not have as many vertices as the cage, each three numbers "
+                           "from -1e50 to 1e50");
   }
   return std::make_shared<const std::vector<Vec3>>(*std::move(positions));
 }
@@ -189,16 +239,38 @@ Status read_poses(const QJsonObject& json, const fs::path& path, State& state) {
     state.poses.push_back({entry["name"].toString(), *positions});
   }
   const QJsonObject line = json["time_line"].toObject();
-  state.time_line.first = line["first"].toInt(state.time_line.first);
-  state.time_line.last =
-      std::max(line["last"].toInt(state.time_line.last), state.time_line.first + 1);
-  const double rate = line["frames_per_second"].toDouble(state.time_line.frames_per_second);
-  state.time_line.frames_per_second = std::clamp(rate, 1.0, 240.0);
+  TimeLine& time_line = state.time_line;
+  const auto read = [&](const char* name, auto& value, const Range& range) -> Status {
+    const QJsonValue stored = line[QLatin1String(name)];
+    if (stored.isUndefined()) {
+      return success();
+    }
+    const bool whole = !std::is_same_v<std::decay_t<decltype(value)>, double>;
+    if (const auto fault = fault_of(stored, std::string("time_line.") + name, range, whole)) {
+      return malformed(path, *fault);
+    }
+    value = static_cast<std::decay_t<decltype(value)>>(stored.toDouble());
+    return success();
+  };
+  const Range frames = {TimeLine::least_frame, TimeLine::most_frame};
+  for (const Status& s :
+       {read("first", time_line.first, frames), read("last", time_line.last, frames),
+        read("frames_per_second", time_line.frames_per_second, {1, 240})}) {
+    if (!s) {
+      return s;
+    }
+  }
+  if (time_line.last <= time_line.first) {
+    return malformed(path, "time_line.last is not after time_line.first");
+  }
   int last_frame = std::numeric_limits<int>::min();
   for (const QJsonValue& entry : line["keys"].toArray()) {
     const Result<SharedPositions> positions = read_pose(entry["positions"], state, path);
     if (!positions) {
       return positions.error();
+    }
+    if (const auto fault = fault_of(entry["frame"], "the frame of a keyframe", frames, true)) {
+      return malformed(path, *fault);
     }
     const int frame = entry["frame"].toInt();
     if (frame <= last_frame) {
@@ -245,6 +317,9 @@ Status write_project(const Project& project, const fs::path& path) {
                                     {"frames_per_second", state.time_line.frames_per_second},
                                     {"keys", keys}};
   }
+  if (!project.saved_as.empty()) {
+    json["saved_as"] = QString::fromStdString(project.saved_as.string());
+  }
   json["generate"] = to_json(project.settings);
   json["view"] = QJsonObject{{"camera", project.camera},
                              {"layers", fields_to_json(project.layers)},
@@ -266,6 +341,9 @@ Result<Project> read_project(const fs::path& path) {
   }
   if (json["format"].toString() != "cagewright-project") {
     return malformed(path, "this is not a Cagewright project");
+  }
+  if (const auto fault = fault_of(json["version"], "version", {1, 1e9}, true)) {
+    return malformed(path, *fault);
   }
   if (json["version"].toInt() > version) {
     return Error{ErrorCode::unsupported,
@@ -298,9 +376,12 @@ Result<Project> read_project(const fs::path& path) {
   }
   project.settings = generate_settings_from_json(json["generate"].toObject());
   const QJsonObject view = json["view"].toObject();
-  project.camera = view["camera"].toObject();
-  project.layers = fields_from_json<Layers>(view["layers"].toObject());
-  project.tools = fields_from_json<ToolSettings>(view["tools"].toObject());
+  project.camera = camera_from(view["camera"].toObject(), project.notes);
+  project.layers =
+      fields_from_json<Layers>(view["layers"].toObject(), "view.layers.", project.notes);
+  project.tools =
+      fields_from_json<ToolSettings>(view["tools"].toObject(), "view.tools.", project.notes);
+  project.saved_as = json["saved_as"].toString().toStdString();
   return project;
 }
 

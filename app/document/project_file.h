@@ -12,6 +12,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace cagewright::app {
 
@@ -24,6 +26,8 @@ struct Project {
   Layers layers;
   ToolSettings tools;
   QJsonObject camera;
+  std::filesystem::path saved_as; ///< of work kept aside: the project it belongs to; or empty
+  std::vector<std::string> notes; ///< what was read was out of range and keeps its default
 };
 
 /// The path of the model is kept both absolute and relative to the project, so that both may move
@@ -31,8 +35,12 @@ struct Project {
 /// Errors: cannot_write.
 Status write_project(const Project& project, const std::filesystem::path& path);
 
-/// Errors: cannot_open, malformed (no project, or numbers that do not fit together), unsupported
-/// (of a later version).
+/// Every number has a range; one that is missing keeps its default. Out of range, numbers of cage,
+/// poses and time line are an error that names them, those of the view keep their default and are
+/// noted.
+///
+/// Errors: cannot_open, malformed (no project, numbers out of range or that do not fit together),
+/// unsupported (of a later version).
 Result<Project> read_project(const std::filesystem::path& path);
 
 } // namespace cagewright::app

@@ -37,6 +37,9 @@ struct Keyframe {
 };
 
 struct TimeLine {
+  static constexpr int least_frame = -9999;
+  static constexpr int most_frame = 99999;
+
   std::vector<Keyframe> keys; ///< by frame, each frame once
   int first = 1;
   int last = 100;

@@ -2,6 +2,7 @@
 /// A cage while its topology is being changed. Private to this folder.
 #pragma once
 
+#include "app/edit/cage_graph.h"
 #include "app/edit/edit_cage.h"
 
 #include <map>
@@ -17,6 +18,10 @@ Error refuse(std::string why);
 Error no_such(const char* what);
 /// Whether there are any, and all of them are faces of the cage.
 bool has_faces(const PolygonMesh& cage, std::span<const Index> faces);
+
+/// The faces, grouped where they share an edge; each group ascending.
+std::vector<std::vector<Index>> connected_faces(const CageGraph& graph,
+                                                std::span<const Index> faces);
 
 /// Whether `after` still is a closed, manifold, oriented surface of as many pieces and handles as
 /// `before`. Errors: invalid_cage.

@@ -36,6 +36,14 @@ Result<EditedCage> split_edges(const PolygonMesh& cage, std::span<const EdgeVert
 /// Splits the edges of whole rings: loops of edges through the middle of runs of quads.
 Result<EditedCage> split_rings(const PolygonMesh& cage, std::span<const EdgeVertices> edges);
 
+/// Cuts one run of quads along its middle, once or several times: new loops of edges from each edge
+/// of the ring of `edge` to the next. Triangles at the ends of the run are cut to fit.
+/// \param cuts   how many loops, 1 or more, evenly spaced
+/// \param slide  in (-1, 1): moves all of them, at most to the ends of the ring's edges; positive
+///                towards edge[1], and to the same side all along the ring
+Result<EditedCage> cut_loops(const PolygonMesh& cage, const EdgeVertices& edge, int cuts,
+                             double slide);
+
 /// Each edge drawn together to its middle. Edges that touch become one point.
 Result<EditedCage> collapse_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges);
 
@@ -48,7 +56,8 @@ Result<EditedCage> subdivide_faces(const PolygonMesh& cage, std::span<const Inde
 
 /// What is selected goes, and the cage closes over it: the faces round a vertex become one (cut in
 /// triangles if it has more than four corners), the faces on both sides of an edge become one, each
-/// connected set of faces is drawn together to a point.
+/// connected set of faces becomes one, or as few triangles as its outline needs, and stays
+/// selected. Faces with no vertex between them to go are refused.
 Result<EditedCage> delete_elements(const PolygonMesh& cage, const Selection& selection);
 
 /// Each connected set of faces moves outward along its mean normal, with new quads at its rim.

@@ -14,9 +14,7 @@
 #include <utility>
 
 namespace cagewright::app {
-namespace {
 
-/// The faces, grouped where they share an edge.
 std::vector<std::vector<Index>> connected_faces(const CageGraph& graph,
                                                 std::span<const Index> faces) {
   std::set<Index> waiting(faces.begin(), faces.end());
@@ -38,8 +36,6 @@ std::vector<std::vector<Index>> connected_faces(const CageGraph& graph,
   }
   return groups;
 }
-
-} // namespace
 
 Result<EditedCage> extrude_faces(const PolygonMesh& cage, std::span<const Index> faces,
                                  double offset) {

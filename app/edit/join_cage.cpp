@@ -112,6 +112,28 @@ void drop_through_vertices(Draft& draft, const std::set<Index>& candidates) {
   }
 }
 
+/// Closes a hole: by one face, or by triangles where it has more than four corners.
+/// \returns by how many
+std::size_t fill(Draft& draft, std::span<const Vec3> positions, const std::vector<Index>& ring,
+                 std::size_t like) {
+  if (ring.size() <= 4) {
+    draft.add_face(ring, like);
+    return 1;
+  }
+  PolygonMesh alone;
+  std::vector<Index> corners;
+  for (const Index c : ring) {
+    corners.push_back(static_cast<Index>(alone.positions.size()));
+    alone.positions.push_back(positions[c]);
+  }
+  alone.add_face(corners);
+  const std::vector<Triangle> triangles = triangulate(alone).triangles;
+  for (const Triangle& t : triangles) {
+    draft.add_face({ring[t[0]], ring[t[1]], ring[t[2]]}, like);
+  }
+  return triangles.size();
+}
+
 Result<EditedCage> delete_vertices(const PolygonMesh& cage, const CageGraph& graph,
                                    std::span<const Index> vertices) {
   // One after the other: the second may be a corner of what the first left.
@@ -135,20 +157,7 @@ Result<EditedCage> delete_vertices(const PolygonMesh& cage, const CageGraph& gra
     for (const Index f : round) {
       draft.remove_face(f);
     }
-    if (ring->size() <= 4) {
-      draft.add_face(*ring, like);
-    } else {
-      PolygonMesh alone;
-      std::vector<Index> corners;
-      for (const Index c : *ring) {
-        corners.push_back(static_cast<Index>(alone.positions.size()));
-        alone.positions.push_back(result.mesh.positions[c]);
-      }
-      alone.add_face(corners);
-      for (const Triangle& t : triangulate(alone).triangles) {
-        draft.add_face({(*ring)[t[0]], (*ring)[t[1]], (*ring)[t[2]]}, like);
-      }
-    }
+    fill(draft, result.mesh.positions, *ring, like);
     Result<EditedCage> step = draft.finish(SelectionMode::vertex, {});
     if (!step) {
       return step.error();
@@ -218,6 +227,48 @@ Result<EditedCage> delete_edges(const PolygonMesh& cage, const CageGraph& graph,
   }
   drop_through_vertices(draft, ends);
   return draft.finish(SelectionMode::edge, {});
+}
+
+/// Each connected set of faces goes, with the vertices that only it uses, and what it leaves is
+/// filled.
+Result<EditedCage> delete_faces(const PolygonMesh& cage, const CageGraph& graph,
+                                std::span<const Index> faces) {
+  Draft draft(cage);
+  std::size_t filled = 0;
+  std::size_t gone = 0;
+  for (const std::vector<Index>& region : connected_faces(graph, faces)) {
+    const std::optional<std::vector<Index>> ring = outline(cage, region);
+    if (!ring || ring->size() < 3) {
+      return refuse("what these faces leave cannot be filled by one face: select a region without "
+                    "holes, smaller than the whole piece");
+    }
+    std::set<Index> vertices;
+    for (const Index f : region) {
+      const std::span<const Index> corners = cage.face(f);
+      vertices.insert(corners.begin(), corners.end());
+    }
+    const bool makes_one = region.size() > 1 && ring->size() <= 4;
+    if (vertices.size() == ring->size() && !makes_one) {
+      continue; // the same hole would be filled in the same way
+    }
+    for (const Index f : region) {
+      draft.remove_face(f);
+    }
+    gone += region.size();
+    filled += fill(draft, cage.positions, *ring, region[0]);
+  }
+  if (gone == 0) {
+    return refuse("a cage stays closed: what these faces leave would be filled by the same faces "
+                  "again. Select the faces round a vertex, or draw these together by Collapse");
+  }
+  Result<EditedCage> result = draft.finish(SelectionMode::face, {});
+  if (result) {
+    result->selection.mode = SelectionMode::face;
+    for (std::size_t f = result->mesh.face_count() - filled; f < result->mesh.face_count(); ++f) {
+      result->selection.faces.push_back(static_cast<Index>(f));
+    }
+  }
+  return result;
 }
 
 Result<EditedCage> flip_edge(const PolygonMesh& cage, const EdgeVertices& edge) {
@@ -325,13 +376,7 @@ Result<EditedCage> delete_elements(const PolygonMesh& cage, const Selection& sel
     if (!has_faces(cage, selection.faces)) {
       return no_such("face");
     }
-    std::vector<EdgeVertices> edges;
-    for (const Index f : selection.faces) {
-      for (const Index e : graph.face_edges(f)) {
-        edges.push_back(graph.edge(e));
-      }
-    }
-    return merge(cage, joined_vertices(edges), SelectionMode::vertex);
+    return delete_faces(cage, graph, selection.faces);
   }
   }
   return refuse("nothing is selected");

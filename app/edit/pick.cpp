@@ -95,6 +95,29 @@ bool Picker::is_visible(const OrbitCamera& camera, const Vec3& p) const {
   return !bvh_.first_hit(sight.origin, sight.direction, distance - tolerance);
 }
 
+/// A face need not be flat: its middle may lie behind it, so that what is seen on the way there
+/// counts, not whether anything is before the middle. Parts of the face may be hidden.
+bool Picker::shows_face(const OrbitCamera& camera, Index face) const {
+  const auto is_seen_at = [&](const Vec3& p) {
+    const std::optional<Projected> at = camera.project(p);
+    const std::optional<Pick> seen = at ? face_at(camera, at->pixel) : std::nullopt;
+    return seen && seen->element == face;
+  };
+  const Vec3 center = center_of(face);
+  if (is_seen_at(center)) {
+    return true;
+  }
+  const std::span<const Index> corners = graph_->face_vertices(face);
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vec3& a = positions_[corners[k]];
+    const Vec3& b = positions_[corners[(k + 1) % corners.size()]];
+    if (is_seen_at((center + a + b) / 3) || is_seen_at(0.25 * center + 0.75 * a)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::optional<Pick> Picker::face_at(const OrbitCamera& camera, const Pixel& cursor) const {
   const Ray sight = camera.ray(cursor);
   const RayHit hit = bvh_.first_hit(sight.origin, sight.direction);
@@ -186,7 +209,8 @@ Selection Picker::within(const OrbitCamera& camera, std::span<const Pixel> outli
     for (Index f = 0; f < graph_->face_count(); ++f) {
       const Vec3 center = center_of(f);
       const std::optional<Projected> middle = camera.project(center);
-      if (middle && contains(outline, middle->pixel) && seen(center)) {
+      if (middle && contains(outline, middle->pixel) &&
+          (options.see_through || shows_face(camera, f))) {
         result.faces.push_back(f);
       }
     }

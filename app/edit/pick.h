@@ -48,13 +48,14 @@ public:
   [[nodiscard]] bool is_visible(const OrbitCamera& camera, const Vec3& p) const;
 
   /// The elements of the mode within a closed outline: vertices inside it, edges that reach into
-  /// it, faces whose middle lies inside it.
+  /// it, faces whose middle lies inside it. A face counts as hidden where nothing of it is seen.
   [[nodiscard]] Selection within(const OrbitCamera& camera, std::span<const Pixel> outline,
                                  SelectionMode mode, const PickOptions& options = {}) const;
 
 private:
   [[nodiscard]] std::vector<std::optional<Projected>> project_all(const OrbitCamera& camera) const;
   [[nodiscard]] Vec3 center_of(Index face) const;
+  [[nodiscard]] bool shows_face(const OrbitCamera& camera, Index face) const;
 
   std::vector<Vec3> positions_;
   const CageGraph* graph_ = nullptr;

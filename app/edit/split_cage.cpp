@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -66,14 +67,20 @@ std::vector<std::vector<Index>> cut(SplitFace face) {
   return parts;
 }
 
-/// Splits edges; faces in `centered` with all edges split get a vertex in their middle.
-Result<EditedCage> subdivide(const PolygonMesh& cage, const std::set<EdgeVertices>& edges,
+constexpr double halfway = 0.5;
+
+/// Splits edges, each at a fraction of its way from its lower vertex; faces in `centered` with all
+/// edges split get a vertex in their middle.
+Result<EditedCage> subdivide(const PolygonMesh& cage, const std::map<EdgeVertices, double>& edges,
                              const std::set<Index>& centered, SelectionMode mode) {
   Draft draft(cage);
   std::map<EdgeVertices, Index> middle;
   std::vector<Index> selected;
-  for (const EdgeVertices& e : edges) {
-    const Index v = draft.add_vertex((draft.position(e[0]) + draft.position(e[1])) / 2, e[0]);
+  for (const auto& [e, at] : edges) {
+    const Vec3 place = at == halfway
+                           ? Vec3((draft.position(e[0]) + draft.position(e[1])) / 2)
+                           : Vec3((1 - at) * draft.position(e[0]) + at * draft.position(e[1]));
+    const Index v = draft.add_vertex(place, e[0]);
     middle.emplace(e, v);
     selected.push_back(v);
   }
@@ -124,12 +131,12 @@ Result<EditedCage> subdivide(const PolygonMesh& cage, const std::set<EdgeVertice
 
 Result<EditedCage> split_edges(const PolygonMesh& cage, std::span<const EdgeVertices> edges) {
   const CageGraph graph(cage);
-  std::set<EdgeVertices> wanted;
+  std::map<EdgeVertices, double> wanted;
   for (const EdgeVertices& e : edges) {
     if (!graph.find_edge(e[0], e[1])) {
       return no_such("edge");
     }
-    wanted.insert({std::min(e[0], e[1]), std::max(e[0], e[1])});
+    wanted.emplace(EdgeVertices{std::min(e[0], e[1]), std::max(e[0], e[1])}, halfway);
   }
   if (wanted.empty()) {
     return refuse("no edge is selected");
@@ -139,14 +146,14 @@ Result<EditedCage> split_edges(const PolygonMesh& cage, std::span<const EdgeVert
 
 Result<EditedCage> split_rings(const PolygonMesh& cage, std::span<const EdgeVertices> edges) {
   const CageGraph graph(cage);
-  std::set<EdgeVertices> wanted;
+  std::map<EdgeVertices, double> wanted;
   for (const EdgeVertices& edge : edges) {
     const std::optional<Index> number = graph.find_edge(edge[0], edge[1]);
     if (!number) {
       return no_such("edge");
     }
     for (const Index e : edge_ring(*number, graph)) {
-      wanted.insert(graph.edge(e));
+      wanted.emplace(graph.edge(e), halfway);
     }
   }
   if (wanted.empty()) {
@@ -155,17 +162,116 @@ Result<EditedCage> split_rings(const PolygonMesh& cage, std::span<const EdgeVert
   return subdivide(cage, wanted, {}, SelectionMode::edge);
 }
 
+namespace {
+
+/// The ring of an edge, each edge from the side of `edge[0]` to the side of `edge[1]`.
+std::vector<EdgeVertices> directed_ring(const EdgeVertices& edge, const CageGraph& graph) {
+  const Index start = *graph.find_edge(edge[0], edge[1]);
+  const std::vector<Index> ring = edge_ring(start, graph);
+  std::vector<EdgeVertices> directed(ring.size());
+  const auto first =
+      static_cast<std::size_t>(std::find(ring.begin(), ring.end(), start) - ring.begin());
+  directed[first] = edge;
+  // The sides of a quad join the ends that lie on the same side of the ring.
+  const auto follow = [&](std::size_t from, std::size_t to) {
+    for (const Index quad : graph.edge_faces(ring[from])) {
+      if (graph.across(ring[from], quad) != ring[to]) {
+        continue;
+      }
+      const std::span<const Index> corners = graph.face_vertices(quad);
+      const auto at = static_cast<std::size_t>(
+          std::find(corners.begin(), corners.end(), directed[from][0]) - corners.begin());
+      const Index after = corners[(at + 1) % 4];
+      const Index mate = after == directed[from][1] ? corners[(at + 3) % 4] : after;
+      const EdgeVertices& e = graph.edge(ring[to]);
+      directed[to] = e[0] == mate ? e : EdgeVertices{e[1], e[0]};
+      return;
+    }
+  };
+  for (std::size_t i = first; i + 1 < ring.size(); ++i) {
+    follow(i, i + 1);
+  }
+  for (std::size_t i = first; i > 0; --i) {
+    follow(i, i - 1);
+  }
+  return directed;
+}
+
+} // namespace
+
+Result<EditedCage> cut_loops(const PolygonMesh& cage, const EdgeVertices& edge, int cuts,
+                             double slide) {
+  if (cuts < 1 || !(std::abs(slide) < 1)) {
+    return refuse("a ring is cut once or more, between its ends");
+  }
+  if (!CageGraph(cage).find_edge(edge[0], edge[1])) {
+    return no_such("edge");
+  }
+  // One cut after the other, each between the last one and the far ends.
+  EditedCage result{cage, {}, {}, {}};
+  result.new_of_old.resize(cage.positions.size());
+  std::iota(result.new_of_old.begin(), result.new_of_old.end(), Index{0});
+  EdgeVertices rest = edge;
+  double done = 0;
+  std::vector<std::vector<Index>> loops; // vertices, rising
+  for (int cut = 1; cut <= cuts; ++cut) {
+    const double even = static_cast<double>(cut) / (cuts + 1);
+    const double at = even + slide / (cuts + 1);
+    const double fraction = (at - done) / (1 - done);
+    done = at;
+    std::map<EdgeVertices, double> wanted;
+    for (const EdgeVertices& e : directed_ring(rest, CageGraph(result.mesh))) {
+      const bool rising = e[0] < e[1];
+      wanted.emplace(EdgeVertices{std::min(e[0], e[1]), std::max(e[0], e[1])},
+                     rising ? fraction : 1 - fraction);
+    }
+    Result<EditedCage> step = subdivide(result.mesh, wanted, {}, SelectionMode::vertex);
+    if (!step) {
+      return step.error();
+    }
+    // New vertices come last, in the order of their edges.
+    const EdgeVertices here = {std::min(rest[0], rest[1]), std::max(rest[0], rest[1])};
+    const auto place = std::distance(wanted.begin(), wanted.find(here));
+    const auto first_new = static_cast<Index>(step->mesh.positions.size() - wanted.size());
+    const Index far = step->new_of_old[rest[1]];
+    for (Index& number : result.new_of_old) {
+      number = number == EditedCage::none ? number : step->new_of_old[number];
+    }
+    for (std::vector<Index>& loop : loops) {
+      std::ranges::transform(loop, loop.begin(), [&](Index v) { return step->new_of_old[v]; });
+    }
+    loops.emplace_back(wanted.size());
+    std::iota(loops.back().begin(), loops.back().end(), first_new);
+    rest = {first_new + static_cast<Index>(place), far};
+    result.mesh = std::move(step->mesh);
+  }
+  result.old_of_new.assign(result.mesh.positions.size(), EditedCage::none);
+  for (Index v = 0; v < result.new_of_old.size(); ++v) {
+    if (result.new_of_old[v] != EditedCage::none) {
+      result.old_of_new[result.new_of_old[v]] = v;
+    }
+  }
+  result.selection.mode = SelectionMode::edge;
+  const CageGraph graph(result.mesh);
+  for (const std::vector<Index>& loop : loops) {
+    const std::vector<EdgeVertices> edges = edges_within(loop, graph);
+    result.selection.edges.insert(result.selection.edges.end(), edges.begin(), edges.end());
+  }
+  std::ranges::sort(result.selection.edges);
+  return result;
+}
+
 Result<EditedCage> subdivide_faces(const PolygonMesh& cage, std::span<const Index> faces) {
   if (!has_faces(cage, faces)) {
     return faces.empty() ? refuse("no face is selected") : no_such("face");
   }
-  std::set<EdgeVertices> edges;
+  std::map<EdgeVertices, double> edges;
   for (const Index f : faces) {
     const std::span<const Index> face = cage.face(f);
     for (std::size_t k = 0; k < face.size(); ++k) {
       const Index a = face[k];
       const Index b = face[(k + 1) % face.size()];
-      edges.insert({std::min(a, b), std::max(a, b)});
+      edges.emplace(EdgeVertices{std::min(a, b), std::max(a, b)}, halfway);
     }
   }
   return subdivide(cage, edges, {faces.begin(), faces.end()}, SelectionMode::face);

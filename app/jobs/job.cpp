@@ -72,19 +72,31 @@ void Job::cancel() {
   thread_.request_stop();
 }
 
-QString time_left(double seconds, double fraction) {
-  if (seconds < 1 || fraction < 0.03 || fraction >= 1) {
+QString TimeLeft::say(double seconds, double fraction) {
+  // The first parts of a job tell little of the rest.
+  constexpr double least_seconds = 1;
+  constexpr double least_fraction = 0.05;
+  if (seconds < least_seconds || fraction < least_fraction || fraction >= 1) {
     return {};
   }
-  const double left = seconds / fraction * (1 - fraction);
-  if (left < 1.5) {
-    return QObject::tr("about a second left");
+  const double end = seconds / fraction;
+  // Sooner than said only where it is much sooner: words that change all the time say nothing.
+  if (!end_ || end - seconds < 0.7 * (*end_ - seconds)) {
+    end_ = end;
   }
-  if (left < 90) {
-    const double step = left < 20 ? 1 : 5;
+  const double left = *end_ - seconds;
+  if (left <= 0) {
+    return QObject::tr("longer than expected");
+  }
+  if (left < 5) {
+    return QObject::tr("a few seconds left");
+  }
+  if (left < 75) {
+    const double step = left < 20 ? 5 : 10;
     return QObject::tr("about %1 seconds left").arg(std::ceil(left / step) * step);
   }
-  return QObject::tr("about %1 minutes left").arg(std::ceil(left / 60));
+  const double minutes = std::ceil(left / 60);
+  return QObject::tr("about %1 minutes left").arg(minutes);
 }
 
 } // namespace cagewright::app

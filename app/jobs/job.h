@@ -10,6 +10,7 @@
 #include <QString>
 
 #include <functional>
+#include <optional>
 #include <thread>
 
 namespace cagewright::app {
@@ -47,7 +48,17 @@ private:
   std::jthread thread_;
 };
 
-/// "about 2 minutes left", from the time so far; empty while it is too early to tell.
-QString time_left(double seconds, double fraction);
+/// What is left of a job, in words that stay true: they count down, and never up again. Parts of
+/// the work go faster than others; what turns out to take longer is said to take longer.
+class TimeLeft {
+public:
+  /// \param seconds   since the start, rising
+  /// \param fraction  of the work that is done
+  /// \returns "about 2 minutes left"; empty while it is too early to tell
+  QString say(double seconds, double fraction);
+
+private:
+  std::optional<double> end_; // in seconds since the start
+};
 
 } // namespace cagewright::app

@@ -13,11 +13,12 @@ bool JobRunner::run(const QString& title, Job::Work work) {
   }
   job_.reset(new Job(title));
   Job* job = job_.get();
-  connect(job, &Job::progressed, this, [this, job](double fraction, const QString& step) {
-    if (job == job_.get()) {
-      Q_EMIT progressed(fraction, step, time_left(job->seconds(), fraction));
-    }
-  });
+  connect(job, &Job::progressed, this,
+          [this, job, left = TimeLeft()](double fraction, const QString& step) mutable {
+            if (job == job_.get()) {
+              Q_EMIT progressed(fraction, step, left.say(job->seconds(), fraction));
+            }
+          });
   connect(job, &Job::failed, this,
           [this, job](const QString& message) { Q_EMIT failed(job->title(), message); });
   connect(job, &Job::finished, this, [this, job] {

@@ -95,9 +95,10 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
   add("model", tr("Model"), tr("Vertices and triangles of the model"));
   problems_ = new QListWidget;
   problems_->setObjectName("problems");
-  problems_->setToolTip(tr("What the check found. It is drawn where it is; the layer Problems "
-                           "shows and hides it."));
-  problems_->setSelectionMode(QAbstractItemView::NoSelection);
+  problems_->setToolTip(tr("What the check found, drawn where it is. A click selects it and brings "
+                           "it into view; the next click goes to the next one."));
+  connect(problems_, &QListWidget::itemClicked, this,
+          [this](QListWidgetItem* item) { choose(problems_->row(item)); });
   problems_->setWordWrap(true);
   problems_->setMinimumHeight(40);
   layout->addWidget(problems_, 1);
@@ -109,6 +110,24 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
   connect(&document, &Document::checkChanged, this, &FiguresPanel::update_check);
   update_figures();
   update_check();
+}
+
+void FiguresPanel::choose(int row) {
+  const auto& report = document_.check().report;
+  if (!report || row < 0 || row >= static_cast<int>(kinds_.size())) {
+    return;
+  }
+  next_ = row == chosen_ ? next_ + 1 : 0;
+  chosen_ = row;
+  std::vector<const Violation*> found;
+  for (const Violation& violation : report->violations) {
+    if (violation.kind == kinds_[static_cast<std::size_t>(row)]) {
+      found.push_back(&violation);
+    }
+  }
+  if (!found.empty()) {
+    Q_EMIT violationChosen(*found[next_ % found.size()]);
+  }
 }
 
 void FiguresPanel::update_figures() {
@@ -143,6 +162,8 @@ void FiguresPanel::update_figures() {
 
 void FiguresPanel::update_check() {
   problems_->clear();
+  kinds_.clear();
+  chosen_ = -1;
   const CageCheck& check = document_.check();
   const auto say = [&](const QString& text, const char* color) {
     verdict_->setText(QString("<span style='color:%1; font-size:14pt'>&#9679;</span> <b>%2</b>")
@@ -162,6 +183,7 @@ void FiguresPanel::update_check() {
     say(tr("Not valid"), "#d62a2a");
     for (std::size_t k = 0; k < violation_kinds; ++k) {
       if (check.report->counts[k] > 0) {
+        kinds_.push_back(static_cast<ViolationKind>(k));
         problems_->addItem(describe(static_cast<ViolationKind>(k), check.report->counts[k]));
       }
     }

@@ -7,6 +7,7 @@
 #include <QWidget>
 
 #include <map>
+#include <vector>
 
 class QLabel;
 class QListWidget;
@@ -22,7 +23,12 @@ class FiguresPanel final : public QWidget {
 public:
   explicit FiguresPanel(Document& document, QWidget* parent = nullptr);
 
+Q_SIGNALS:
+  /// One of the problems was clicked; clicked again, it is the next of the kind.
+  void violationChosen(const cagewright::Violation& violation);
+
 private:
+  void choose(int row);
   void update_figures();
   void update_check();
 
@@ -30,6 +36,9 @@ private:
   std::map<QString, QLabel*> values_;
   QLabel* verdict_ = nullptr;
   QListWidget* problems_ = nullptr;
+  std::vector<ViolationKind> kinds_; // of the rows
+  std::size_t next_ = 0;             // of the kind chosen last
+  int chosen_ = -1;                  // row
 };
 
 } // namespace cagewright::app

@@ -131,7 +131,7 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
   bind_->setStyleSheet(big_button_style());
   bind_->setToolTip(tr("Ties the model to the cage (Ctrl+B): from then on, dragging the cage "
                        "deforms the model"));
-  connect(bind_, &QPushButton::clicked, &session_, &Session::bind);
+  connect(bind_, &QPushButton::clicked, &session_, [this] { session_.bind(); });
   layout->addWidget(bind_);
 
   refine_ = new QPushButton(tr("Back to Refining the Cage"));

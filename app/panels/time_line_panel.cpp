@@ -43,8 +43,7 @@ TimeRuler::TimeRuler(Document& document, QWidget* parent) : QWidget(parent), doc
 }
 
 int TimeRuler::frame() const {
-  const TimeLine& line = document_.state().time_line;
-  return static_cast<int>(std::lround(document_.time().value_or(line.first)));
+  return static_cast<int>(std::lround(document_.frame()));
 }
 
 double TimeRuler::x_of(double frame) const {
@@ -80,11 +79,9 @@ void TimeRuler::paintEvent(QPaintEvent* /*event*/) {
     painter.drawPolygon(QPolygonF(
         {at + QPointF(0, -6), at + QPointF(5, 0), at + QPointF(0, 6), at + QPointF(-5, 0)}));
   }
-  if (document_.time() || hasFocus()) {
-    painter.setPen(QPen(palette().color(QPalette::Highlight), 2));
-    const double x = x_of(document_.time().value_or(line.first));
-    painter.drawLine(QPointF(x, 2), QPointF(x, height() - 2));
-  }
+  painter.setPen(QPen(palette().color(QPalette::Highlight), 2));
+  const double x = x_of(document_.frame());
+  painter.drawLine(QPointF(x, 2), QPointF(x, height() - 2));
 }
 
 void TimeRuler::choose(double x) {
@@ -158,8 +155,8 @@ TimeLinePanel::TimeLinePanel(Editor& editor, QWidget* parent)
   first_ = number(new QSpinBox, "first_frame", tr("from"), tr("First frame"));
   last_ = number(new QSpinBox, "last_frame", tr("to"), tr("Last frame"));
   rate_ = number(new QDoubleSpinBox, "rate", tr("Frames per second"), tr("Speed of playing"));
-  first_->setRange(-9999, 99998);
-  last_->setRange(-9998, 99999);
+  first_->setRange(TimeLine::least_frame, TimeLine::most_frame - 1);
+  last_->setRange(TimeLine::least_frame + 1, TimeLine::most_frame);
   rate_->setRange(1, 240);
   rate_->setDecimals(0);
   layout->addWidget(ruler_);
@@ -232,7 +229,7 @@ void TimeLinePanel::toggle_playing() {
   if (timer_.isActive()) {
     timer_.stop();
   } else if (document_.mode() == Mode::deform && !line.keys.empty()) {
-    start_ = document_.time().value_or(line.first);
+    start_ = document_.frame();
     if (start_ >= line.last) {
       start_ = line.first;
     }

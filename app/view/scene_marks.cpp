@@ -96,12 +96,29 @@ ViewColors ViewColors::dark() {
           .text = {0.90F, 0.91F, 0.93F}};
 }
 
-Color weight_color(float weight) {
-  if (weight < 0) {
-    const Rgb grey = {0.62F, 0.62F, 0.64F};
-    return color_of(mixed(grey, {0.55F, 0.25F, 0.75F}, std::min(1.0F, -4 * weight)));
+Rgb weight_rgb(float weight) {
+  struct Stop {
+    float weight;
+    Rgb color;
+  };
+  // Two hues that part at a light grey, also told apart by those who see no red or no green.
+  static constexpr std::array<Stop, 6> stops = {{{least_weight, {0.10F, 0.20F, 0.60F}},
+                                                 {-0.15F, {0.40F, 0.58F, 0.88F}},
+                                                 {0.0F, {0.86F, 0.86F, 0.85F}},
+                                                 {0.25F, {0.98F, 0.78F, 0.40F}},
+                                                 {0.6F, {0.93F, 0.45F, 0.16F}},
+                                                 {1.0F, {0.65F, 0.05F, 0.10F}}}};
+  const float w = std::clamp(weight, stops.front().weight, stops.back().weight);
+  std::size_t i = 1;
+  while (i + 1 < stops.size() && w > stops[i].weight) {
+    ++i;
   }
-  return color_of(scale_color(weight));
+  return mixed(stops[i - 1].color, stops[i].color,
+               (w - stops[i - 1].weight) / (stops[i].weight - stops[i - 1].weight));
+}
+
+Color weight_color(float weight) {
+  return color_of(weight_rgb(weight));
 }
 
 Color distance_color(float distance) {

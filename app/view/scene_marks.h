@@ -23,6 +23,9 @@ struct ViewColors {
 
 /// A colour for a weight: blue below 0, grey at 0, to yellow at 1.
 Color weight_color(float weight);
+Rgb weight_rgb(float weight);
+/// Weights from here to 1 have colours of their own; the scale goes through grey at 0.
+constexpr float least_weight = -0.5F;
 /// A colour for a distance, a fraction of the diagonal: the same scale, full at 0.08.
 Color distance_color(float distance);
 

@@ -16,6 +16,8 @@ namespace {
 
 // Pictures that take longer are drawn coarsely while something moves, in seconds.
 constexpr double slow_picture = 0.04;
+// How much is seen round what is brought into view, a fraction of the diagonal.
+constexpr double around_a_place = 0.05;
 // So long after the last movement the picture is drawn with all triangles, in milliseconds.
 constexpr int rest_after = 250;
 
@@ -48,6 +50,7 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
   connect(&document_, &Document::cageChanged, this, [this] {
     graph_is_stale_ = true;
     forget_hover();
+    end_loop_cut();
     if (!framed_ && document_.has_cage()) {
       model_changed();
     }
@@ -55,6 +58,9 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
   });
   connect(&document_, &Document::cageMoved, this, [this] {
     picker_.reset();
+    if (loop_cut_) {
+      preview_loop_cut();
+    }
     update();
   });
   connect(&document_, &Document::colorsChanged, this, [this] {
@@ -78,7 +84,10 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
     update();
   });
   connect(&document_, &Document::checkChanged, this, repaint);
-  connect(&document_, &Document::modeChanged, this, repaint);
+  connect(&document_, &Document::modeChanged, this, [this] {
+    end_loop_cut();
+    update();
+  });
   connect(&document_, &Document::toolsChanged, this, repaint);
   connect(&document_, &Document::viewStateChanged, this, repaint);
   model_changed();
@@ -161,9 +170,21 @@ void Viewport::frame_selection() {
     box.extend(positions[v]);
   }
   // Some of what is around a single vertex is seen, too.
-  const double least = 0.05 * document_.diagonal();
+  const double least = around_a_place * document_.diagonal();
   box.extend(Vec3(box.center().array() - least));
   box.extend(Vec3(box.center().array() + least));
+  camera_.frame(box);
+  camera_moved();
+}
+
+void Viewport::frame_place(const Vec3& place) {
+  if (!place.allFinite()) {
+    return;
+  }
+  Box3 box;
+  const Vec3 around = Vec3::Constant(around_a_place * document_.diagonal());
+  box.extend(Vec3(place - around));
+  box.extend(Vec3(place + around));
   camera_.frame(box);
   camera_moved();
 }

@@ -4,6 +4,7 @@
 
 #include "app/commands/cage_actions.h"
 #include "app/commands/editor.h"
+#include "app/edit/edit_cage.h"
 #include "app/edit/gizmo.h"
 #include "app/edit/orbit_camera.h"
 #include "app/edit/pick.h"
@@ -18,6 +19,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace cagewright::app {
@@ -44,6 +46,8 @@ public:
   /// Brings everything, or only the selection, into view.
   void frame_all();
   void frame_selection();
+  /// Brings a point and what is round it into view.
+  void frame_place(const Vec3& place);
 
   /// The camera, for the project file.
   [[nodiscard]] QJsonObject camera_state() const;
@@ -65,8 +69,13 @@ public:
   [[nodiscard]] bool transforming() const { return drag_.is_active(); }
   /// Starts one as by a key, with the mouse where it is.
   void begin_transform(TransformKind kind, Handle handle = Handle::none);
-  /// Extrudes the selected faces, and goes on with moving them along their normal.
+  /// Extrudes the selected faces, and goes on with moving them along their normal: one step of
+  /// undo, and none if it is cancelled.
   void extrude();
+  /// Cuts a ring of quads: the one of the edge under the pointer, until a click; the wheel says how
+  /// often. Then the loops slide, until another.
+  void begin_loop_cut();
+  [[nodiscard]] bool cutting_loops() const { return loop_cut_.has_value(); }
 
 Q_SIGNALS:
   void cameraChanged();
@@ -93,6 +102,14 @@ private:
     Pixel at = Pixel::Zero();
     Qt::KeyboardModifiers modifiers;
     std::optional<Pick> pick;
+  };
+  struct LoopCut {
+    std::optional<EdgeVertices> edge; ///< of the ring
+    int cuts = 1;
+    double slide = 0;
+    bool slides = false;                      ///< the ring is chosen
+    Pixel from = Pixel::Zero();               ///< where sliding began
+    std::vector<std::pair<Vec3, Vec3>> lines; ///< to be drawn
   };
   struct Dirty {
     bool model = true;
@@ -121,11 +138,23 @@ private:
   // The mouse
   void click(const Press& press);
   void finish_outline(Qt::KeyboardModifiers modifiers);
+  void forget_outline();
   void hover(const Pixel& cursor);
   void forget_hover();
   [[nodiscard]] std::vector<Pixel> outline() const;
   [[nodiscard]] PickOptions pick_options() const;
   [[nodiscard]] Selection selection_of(const Pick& pick) const;
+
+  // Loop cuts
+  void aim_loop_cut();
+  void preview_loop_cut();
+  [[nodiscard]] Result<EditedCage> loop_cut_result();
+  void slide_loop_cut();
+  void add_loop_cuts(int more);
+  void confirm_loop_cut();
+  void end_loop_cut();
+  bool loop_cut_key(QKeyEvent* event);
+  bool loop_cut_press(Qt::MouseButton button);
 
   // Transformations
   [[nodiscard]] TransformKind tool_kind() const;
@@ -166,6 +195,8 @@ private:
   TransformDrag drag_;
   TransformTarget target_;
   std::vector<Index> moving_; // the vertices handed to the editor
+  QString step_title_;        // of a step that the drag is the end of, or empty
+  std::optional<LoopCut> loop_cut_;
   QString caption_;
 };
 

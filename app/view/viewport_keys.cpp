@@ -12,13 +12,15 @@ bool Viewport::event(QEvent* event) {
     const auto* key = static_cast<QKeyEvent*>(event);
     // Digits of the keypad look from the sides; the same digits elsewhere may be shortcuts.
     const bool keypad = key->modifiers().testFlag(Qt::KeypadModifier);
-    if (drag_.is_active() || keypad || (box_armed_ && key->key() == Qt::Key_Escape)) {
+    const bool outlines = gesture_ == Gesture::box || gesture_ == Gesture::lasso;
+    const bool ends = key->key() == Qt::Key_Escape || key->matches(QKeySequence::Undo);
+    if (drag_.is_active() || loop_cut_ || keypad || ((box_armed_ || outlines) && ends)) {
       event->accept();
       return true;
     }
   }
   // Tab would leave the viewport.
-  if (event->type() == QEvent::KeyPress && drag_.is_active()) {
+  if (event->type() == QEvent::KeyPress && (drag_.is_active() || loop_cut_)) {
     keyPressEvent(static_cast<QKeyEvent*>(event));
     return true;
   }
@@ -29,7 +31,15 @@ bool Viewport::drag_key(QKeyEvent* event) {
   if (!drag_.is_active()) {
     return false;
   }
-  char key = 0;
+  const bool undoes = event->matches(QKeySequence::Undo);
+  const bool with_modifier =
+      (event->modifiers() & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) != 0;
+  const bool ends = event->key() == Qt::Key_Escape || event->key() == Qt::Key_Return ||
+                    event->key() == Qt::Key_Enter || event->key() == Qt::Key_Control;
+  if (with_modifier && !undoes && !ends) {
+    return true; // shortcuts of elsewhere wait until it is over
+  }
+  char key = undoes ? TransformDrag::escape : '\0';
   switch (event->key()) {
   case Qt::Key_Return:
   case Qt::Key_Enter:
@@ -53,6 +63,9 @@ bool Viewport::drag_key(QKeyEvent* event) {
     drag_.set_precise(true);
     return true;
   default:
+    if (key == TransformDrag::escape) {
+      break;
+    }
     if (event->key() >= Qt::Key_A && event->key() <= Qt::Key_Z) {
       key = static_cast<char>('a' + event->key() - Qt::Key_A);
     } else if (event->key() >= Qt::Key_Space && event->key() < Qt::Key_A) {
@@ -148,9 +161,21 @@ bool Viewport::camera_key(QKeyEvent* event) {
   return true;
 }
 
+void Viewport::forget_outline() {
+  box_armed_ = false;
+  gesture_ = Gesture::none;
+  lasso_.clear();
+  update();
+}
+
 bool Viewport::edit_key(QKeyEvent* event) {
   const bool control = event->modifiers().testFlag(Qt::ControlModifier);
   const bool alt = event->modifiers().testFlag(Qt::AltModifier);
+  if (event->matches(QKeySequence::Undo) &&
+      (box_armed_ || gesture_ == Gesture::box || gesture_ == Gesture::lasso)) {
+    forget_outline();
+    return true;
+  }
   const auto does = [&](CageAction action) {
     perform(action, editor_);
     return true;
@@ -167,7 +192,8 @@ bool Viewport::edit_key(QKeyEvent* event) {
     case Qt::Key_L:
       return does(CageAction::select_linked);
     case Qt::Key_R:
-      return does(CageAction::split_ring);
+      begin_loop_cut();
+      return true;
     default:
       return false;
     }
@@ -177,9 +203,7 @@ bool Viewport::edit_key(QKeyEvent* event) {
     return does(alt ? CageAction::select_none : CageAction::select_all);
   case Qt::Key_Escape:
     if (box_armed_ || gesture_ == Gesture::box || gesture_ == Gesture::lasso) {
-      box_armed_ = false;
-      gesture_ = Gesture::none;
-      update();
+      forget_outline();
       return true;
     }
     return does(CageAction::select_none);
@@ -224,7 +248,7 @@ bool Viewport::edit_key(QKeyEvent* event) {
 }
 
 void Viewport::keyPressEvent(QKeyEvent* event) {
-  if (drag_key(event) || camera_key(event) || edit_key(event)) {
+  if (drag_key(event) || loop_cut_key(event) || camera_key(event) || edit_key(event)) {
     event->accept();
     return;
   }

@@ -36,6 +36,11 @@ Marks Viewport::make_marks() {
     const bool hovers = with_texts_ && gesture_ == Gesture::none && !drag_.is_active();
     add_cage(document_, shown_cage(), graph_, camera_, colors_, hovers ? hovered_ : std::nullopt,
              marks);
+    if (loop_cut_) {
+      for (const auto& [a, b] : loop_cut_->lines) {
+        marks.lines.push_back({a, b, color_of(colors_.selected), 2.5F});
+      }
+    }
     if (layers.problems) {
       add_problems(document_, colors_, marks);
     }
@@ -45,7 +50,7 @@ Marks Viewport::make_marks() {
 
 std::optional<GizmoFrame> Viewport::gizmo() const {
   if (!document_.has_cage() || document_.selection().empty() || !has_gizmo_tool() ||
-      graph_is_stale_ || document_.comparing() || document_.time()) {
+      graph_is_stale_ || document_.comparing()) {
     return std::nullopt;
   }
   const std::vector<Index> vertices = vertices_of(document_.selection(), graph_);
@@ -206,10 +211,13 @@ void Viewport::paint_legend(QPainter& painter) const {
   if (!weights && !distance) {
     return;
   }
-  const QRectF bar(width() - 172, height() - 30, 150, 10);
+  const QRectF bar(width() - 192, height() - 34, 170, 10);
   QLinearGradient gradient(bar.topLeft(), bar.topRight());
-  for (int i = 0; i <= 10; ++i) {
-    gradient.setColorAt(i / 10.0, qt(scale_color(i / 10.0)));
+  constexpr int steps = 60;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = static_cast<double>(i) / steps;
+    const auto weight = static_cast<float>(least_weight + t * (1 - least_weight));
+    gradient.setColorAt(t, qt(weights ? weight_rgb(weight) : scale_color(t)));
   }
   painter.save();
   painter.setPen(QPen(qt(colors_.text, 0.5), 1));
@@ -219,10 +227,16 @@ void Viewport::paint_legend(QPainter& painter) const {
   const QRectF above = bar.adjusted(-40, -20, 0, -12);
   painter.drawText(above, Qt::AlignRight | Qt::AlignVCenter,
                    weights ? tr("weight of the selection") : tr("distance to the model"));
-  const QRectF below = bar.adjusted(0, 10, 0, 16);
-  painter.drawText(below, Qt::AlignLeft | Qt::AlignVCenter, "0");
+  const QRectF below = bar.adjusted(0, 11, 0, 19);
+  painter.drawText(below, Qt::AlignLeft | Qt::AlignVCenter,
+                   weights ? locale().toString(least_weight, 'g', 2) : "0");
   painter.drawText(below, Qt::AlignRight | Qt::AlignVCenter,
                    weights ? "1" : tr("8 % of the diagonal"));
+  if (weights) {
+    const double zero = bar.left() - least_weight / (1 - least_weight) * bar.width();
+    painter.drawLine(QPointF(zero, bar.top()), QPointF(zero, bar.bottom()));
+    painter.drawText(QRectF(zero - 20, below.top(), 40, below.height()), Qt::AlignCenter, "0");
+  }
   painter.restore();
 }
 

@@ -122,6 +122,9 @@ void Viewport::mousePressEvent(QMouseEvent* event) {
     }
     return;
   }
+  if (loop_cut_press(event->button())) {
+    return;
+  }
   const Qt::KeyboardModifiers modifiers = event->modifiers();
   const bool alt_left = event->button() == Qt::LeftButton && modifiers.testFlag(Qt::AltModifier);
   if (event->button() == Qt::MiddleButton || alt_left) {
@@ -131,9 +134,7 @@ void Viewport::mousePressEvent(QMouseEvent* event) {
     return;
   }
   if (event->button() == Qt::RightButton && (box_armed_ || gesture_ != Gesture::none)) {
-    box_armed_ = false;
-    gesture_ = Gesture::none;
-    update();
+    forget_outline();
     return;
   }
   if (event->button() != Qt::LeftButton || !document_.has_cage()) {
@@ -172,6 +173,14 @@ void Viewport::mouseMoveEvent(QMouseEvent* event) {
     drag_.set_precise(event->modifiers().testFlag(Qt::ShiftModifier));
     drag_.move(at);
     apply_drag();
+    return;
+  }
+  if (loop_cut_ && gesture_ == Gesture::none) {
+    if (loop_cut_->slides) {
+      slide_loop_cut();
+    } else {
+      aim_loop_cut();
+    }
     return;
   }
   switch (gesture_) {
@@ -260,13 +269,14 @@ void Viewport::mouseReleaseEvent(QMouseEvent* event) {
     gesture_ = Gesture::none;
     break;
   }
-  if (!drag_.is_active()) {
+  if (!drag_.is_active() && !loop_cut_) {
     hover(cursor_);
   }
 }
 
 void Viewport::mouseDoubleClickEvent(QMouseEvent* event) {
-  if (drag_.is_active() || event->button() != Qt::LeftButton || !document_.has_cage()) {
+  if (drag_.is_active() || loop_cut_ || event->button() != Qt::LeftButton ||
+      !document_.has_cage()) {
     mousePressEvent(event);
     return;
   }
@@ -308,6 +318,10 @@ void Viewport::wheelEvent(QWheelEvent* event) {
       document_.set_tools(tools);
       target_.set_radius(tools.proportional_radius * document_.diagonal());
       apply_drag();
+    }
+  } else if (loop_cut_ && !event->modifiers().testFlag(Qt::ControlModifier)) {
+    if (steps != 0) {
+      add_loop_cuts(steps > 0 ? 1 : -1);
     }
   } else if (!pixels.isNull() && event->modifiers().testFlag(Qt::ShiftModifier)) {
     camera_.pan(Pixel(pixels.x(), pixels.y())); // two fingers on a track pad

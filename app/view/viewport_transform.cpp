@@ -71,20 +71,34 @@ void Viewport::begin_transform(TransformKind kind, Handle handle) {
 }
 
 void Viewport::extrude() {
+  if (drag_.is_active()) {
+    return;
+  }
+  editor_.begin_step();
   if (!perform(CageAction::extrude, editor_)) {
+    editor_.cancel_step();
     return;
   }
   begin_transform(TransformKind::translate);
-  if (drag_.is_active()) { // along z of the local frame, which is the normal
-    drag_.key('z');
-    if (document_.tools().axes != AxesKind::local) {
-      drag_.key('z');
-    }
-    update_caption();
+  if (!drag_.is_active()) {
+    editor_.end_step(tr("Extrude"));
+    return;
   }
+  step_title_ = tr("Extrude");
+  // Along z of the local frame, which is the normal.
+  drag_.key('z');
+  if (document_.tools().axes != AxesKind::local) {
+    drag_.key('z');
+  }
+  update_caption();
 }
 
 void Viewport::apply_drag() {
+  if (!editor_.moving()) { // something else was done meanwhile
+    drag_.cancel();
+    end_drag();
+    return;
+  }
   const std::vector<Vec3> all = target_.moved(drag_.transform());
   std::vector<Vec3> positions;
   positions.reserve(moving_.size());
@@ -112,6 +126,14 @@ void Viewport::end_drag() {
     }
   } else {
     editor_.cancel_move();
+  }
+  if (!step_title_.isEmpty()) {
+    if (drag_.state() == TransformDrag::State::confirmed) {
+      editor_.end_step(step_title_);
+    } else {
+      editor_.cancel_step();
+    }
+    step_title_.clear();
   }
   caption_.clear();
   picker_.reset();

@@ -5,8 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <new>
 #include <thread>
+#include <vector>
 
 namespace cagewright::app {
 namespace {
@@ -68,10 +72,48 @@ TEST(Job, MakesAFailureOfWhatItsWorkThrows) {
 }
 
 TEST(Job, TellsTheTimeThatIsLeftOnceItCan) {
-  EXPECT_TRUE(time_left(0.2, 0.5).isEmpty());
-  EXPECT_TRUE(time_left(60, 0.001).isEmpty());
-  EXPECT_EQ(time_left(10, 0.5), "about 10 seconds left");
-  EXPECT_EQ(time_left(100, 0.1), "about 15 minutes left");
+  EXPECT_TRUE(TimeLeft().say(0.2, 0.5).isEmpty());
+  EXPECT_TRUE(TimeLeft().say(60, 0.001).isEmpty());
+  EXPECT_EQ(TimeLeft().say(10, 0.5), "about 10 seconds left");
+  EXPECT_EQ(TimeLeft().say(100, 0.1), "about 15 minutes left");
+}
+
+/// As a number: of seconds, the last thing to be said counting as none.
+double seconds_in(const QString& words) {
+  if (words == "longer than expected") {
+    return 0;
+  }
+  if (words == "a few seconds left") {
+    return 4;
+  }
+  const double number = words.section(' ', 1, 1).toDouble();
+  EXPECT_GT(number, 0) << words.toStdString();
+  return words.contains("minute") ? 60 * number : number;
+}
+
+TEST(Job, TellsATimeLeftThatNeverClimbs) {
+  // Work that is quick at first, even, slow at first, and that comes in jumps.
+  const std::vector<std::function<double(double)>> courses = {
+      [](double t) { return std::sqrt(t); }, [](double t) { return t; },
+      [](double t) { return t * t; }, [](double t) { return std::floor(8 * t) / 8; }};
+  for (std::size_t course = 0; course < courses.size(); ++course) {
+    TimeLeft left;
+    double before = std::numeric_limits<double>::infinity();
+    int changes = 0;
+    QString said;
+    for (double t = 0; t < 1; t += 0.001) {
+      const QString now = left.say(200 * t, courses[course](t));
+      if (now.isEmpty()) {
+        continue;
+      }
+      EXPECT_LE(seconds_in(now), before) << "course " << course << " at " << t;
+      before = seconds_in(now);
+      changes += now != said ? 1 : 0;
+      said = now;
+    }
+    EXPECT_LT(changes, 25) << "course " << course;
+    EXPECT_GT(changes, 2) << "course " << course;
+  }
 }
 
 } // namespace

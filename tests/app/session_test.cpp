@@ -459,10 +459,67 @@ TEST_F(SessionTest, RefusesToBindAnOpenCage) {
   ASSERT_TRUE(write_mesh(open_cage, path("open.obj")));
   session_.open(path("model.obj"), path("open.obj"));
   wait();
+  int doubts = 0;
+  QObject::connect(&session_, &Session::bindingDoubtful, [&] { ++doubts; });
   session_.bind();
+  ASSERT_TRUE(wait_until([&] { return doubts == 1; }));
+  EXPECT_EQ(session_.document().mode(), Mode::refine);
+  EXPECT_TRUE(failures_.empty());
+  session_.bind(Session::Doubts::ignore);
   wait();
   EXPECT_EQ(session_.document().mode(), Mode::refine);
   EXPECT_EQ(failures_.size(), 1U);
+}
+
+/// A project with one thing of it replaced.
+TEST_F(SessionTest, RefusesNumbersOutOfRangeAndNamesThem) {
+  open_and_bind();
+  session_.editor().set_keyframe(4);
+  ASSERT_TRUE(session_.save_project(path("good.cagewright")));
+  std::ifstream file(path("good.cagewright"));
+  const std::string good((std::istreambuf_iterator<char>(file)), {});
+  const auto opened_with = [&](const std::string& name, const std::string& value) {
+    const std::size_t at = good.find("\"" + name + "\": ");
+    EXPECT_NE(at, std::string::npos) << name;
+    const std::size_t begin = at + name.size() + 4;
+    std::string text = good;
+    text.replace(begin, good.find_first_of(",\n", begin) - begin, value);
+    std::ofstream(path("wrong.cagewright")) << text;
+    failures_.clear();
+    session_.open(path("wrong.cagewright"));
+    wait();
+    return failures_.empty() ? std::string() : failures_.front();
+  };
+  const std::pair<const char*, const char*> errors[] = {{"first", "-2147483648"},
+                                                        {"last", "2147483647"},
+                                                        {"last", "-50"},
+                                                        {"last", "1e300"},
+                                                        {"frames_per_second", "0"},
+                                                        {"frames_per_second", "1e9"},
+                                                        {"frame", "100000000"},
+                                                        {"frame", "1.5"},
+                                                        {"version", "-1"},
+                                                        {"first", "2.5"},
+                                                        {"frames_per_second", "null"},
+                                                        {"frame", "\"x\""}};
+  for (const auto& [name, value] : errors) {
+    const std::string said = opened_with(name, value);
+    EXPECT_NE(said.find(name), std::string::npos) << name << " " << value << ": " << said;
+    EXPECT_NE(said.find("wrong.cagewright"), std::string::npos) << said;
+  }
+  // What is only shown is not worth losing work over.
+  const std::pair<const char*, const char*> notes[] = {
+      {"symmetry_axis", "-1"}, {"symmetry_axis", "7"}, {"symmetry_axis", "1.5"},
+      {"tool", "99"},          {"pivot", "-3"},        {"proportional_radius", "0"},
+      {"snap_step", "-1"},     {"snap_scale", "1e99"}, {"pitch_degrees", "400"}};
+  for (const auto& [name, value] : notes) {
+    const std::string said = opened_with(name, value);
+    EXPECT_NE(said.find(name), std::string::npos) << name << " " << value << ": " << said;
+    EXPECT_EQ(session_.document().mode(), Mode::deform);
+    EXPECT_GE(session_.document().tools().symmetry_axis, 0);
+    EXPECT_LE(session_.document().tools().symmetry_axis, 2);
+  }
+  EXPECT_EQ(opened_with("frame", "5"), "");
 }
 
 TEST_F(SessionTest, RecoversWorkOfAProgramThatCrashed) {
@@ -482,7 +539,8 @@ TEST_F(SessionTest, RecoversWorkOfAProgramThatCrashed) {
   }
   EXPECT_EQ(kept.entryList({"*.cagewright"}), QStringList("crashed.cagewright"));
   session_.editor().reset_pose();
-  EXPECT_EQ(Recovery::subject_of(kept.filePath("crashed.cagewright")), "model.obj");
+  EXPECT_TRUE(
+      Recovery::subject_of(kept.filePath("crashed.cagewright")).startsWith("model.obj, not saved"));
   Recovery recovery(session_, kept);
   recovery.recover(kept.filePath("crashed.cagewright"));
   wait();

@@ -1,6 +1,7 @@
 #include "app/edit/edit_cage.h"
 
 #include "app/edit/cage_graph.h"
+#include "app/edit/repair_cage.h"
 #include "app/edit/select.h"
 #include "core/random.h"
 #include "mesh/shapes.h"
@@ -248,6 +249,108 @@ TEST(EditCage, KeepsGroups) {
   EXPECT_EQ(edited->mesh.group_names, cube.group_names);
   ASSERT_EQ(edited->mesh.face_groups.size(), edited->mesh.face_count());
   EXPECT_GE(std::count(edited->mesh.face_groups.begin(), edited->mesh.face_groups.end(), 1U), 4);
+}
+
+TEST(EditCage, LoopsAreCutEvenlyAndSlideToOneSide) {
+  const PolygonMesh torus = quad_torus(8, 6);
+  const EdgeVertices across = CageGraph(torus).edge(3);
+  const std::vector<Index> ring = edge_ring(3, CageGraph(torus));
+  for (const int cuts : {1, 2, 5}) {
+    for (const double slide : {0.0, 0.7, -0.7}) {
+      for (const EdgeVertices& edge : {across, EdgeVertices{across[1], across[0]}}) {
+        const Result<EditedCage> edited = cut_loops(torus, edge, cuts, slide);
+        ASSERT_TRUE(edited) << edited.error().message;
+        expect_maps_agree(torus, *edited);
+        EXPECT_TRUE(is_sound(edited->mesh));
+        EXPECT_EQ(edited->mesh.positions.size(), torus.positions.size() + cuts * ring.size());
+        EXPECT_EQ(edited->mesh.corners().size(), 4 * edited->mesh.face_count()) << "all quads";
+        EXPECT_EQ(edited->selection.edges.size(), cuts * ring.size());
+        // The first loop is as far along every edge as along this one.
+        const Vec3& a = torus.positions[edge[0]];
+        const Vec3& b = torus.positions[edge[1]];
+        double nearest = 1;
+        for (std::size_t v = torus.positions.size(); v < edited->mesh.positions.size(); ++v) {
+          const Vec3& p = edited->mesh.positions[v];
+          const double t = (p - a).dot(b - a) / (b - a).squaredNorm();
+          if ((p - a - t * (b - a)).norm() < 1e-12) {
+            nearest = std::min(nearest, t);
+          }
+        }
+        EXPECT_NEAR(nearest, (1 + slide) / (cuts + 1), 1e-12);
+      }
+    }
+  }
+  EXPECT_NEAR(volume(cut_loops(torus, across, 3, 0.4)->mesh), volume(torus), 0.05);
+}
+
+TEST(EditCage, LoopsEndInTriangles) {
+  PolygonMesh cage = quad_cube(2);
+  const Result<EditedCage> flipped = split_edges(cage, std::vector{CageGraph(cage).edge(5)});
+  ASSERT_TRUE(flipped);
+  const CageGraph graph(flipped->mesh);
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    const Result<EditedCage> edited = cut_loops(flipped->mesh, graph.edge(e), 3, 0.3);
+    ASSERT_TRUE(edited) << edited.error().message;
+    EXPECT_TRUE(is_sound(edited->mesh));
+    expect_maps_agree(flipped->mesh, *edited);
+  }
+  EXPECT_FALSE(cut_loops(cage, {0, 1}, 0, 0));
+  EXPECT_FALSE(cut_loops(cage, {0, 1}, 1, 1));
+  EXPECT_FALSE(cut_loops(cage, {0, 0}, 1, 0));
+}
+
+TEST(EditCage, DeletedFacesAreFilledAndStaySelected) {
+  const PolygonMesh cube = quad_cube(3);
+  const CageGraph graph(cube);
+  Selection round; // the four faces round a vertex that only they use
+  round.mode = SelectionMode::face;
+  for (Index v = 0; v < graph.vertex_count() && round.faces.empty(); ++v) {
+    if (graph.vertex_faces(v).size() == 4) {
+      round.faces.assign(graph.vertex_faces(v).begin(), graph.vertex_faces(v).end());
+    }
+  }
+  std::ranges::sort(round.faces);
+  const Result<EditedCage> edited = delete_elements(cube, round);
+  ASSERT_TRUE(edited) << edited.error().message;
+  EXPECT_TRUE(is_sound(edited->mesh));
+  EXPECT_EQ(edited->mesh.positions.size(), cube.positions.size() - 1);
+  EXPECT_EQ(edited->selection.mode, SelectionMode::face);
+  EXPECT_FALSE(edited->selection.faces.empty());
+  expect_maps_agree(cube, *edited);
+
+  const Selection one{.mode = SelectionMode::face, .vertices = {}, .edges = {}, .faces = {0}};
+  const Result<EditedCage> refused = delete_elements(cube, one);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("closed"), std::string::npos);
+  Selection all = one;
+  for (Index f = 1; f < cube.face_count(); ++f) {
+    all.faces.push_back(f);
+  }
+  EXPECT_FALSE(delete_elements(cube, all));
+}
+
+TEST(RepairCage, WeldsAndTurnsWhatIsNearlyRight) {
+  const PolygonMesh torus = quad_torus(8, 6);
+  PolygonMesh apart;
+  Random random(7);
+  for (std::size_t f = 0; f < torus.face_count(); ++f) {
+    std::vector<Index> corners;
+    for (const Index v : torus.face(f)) {
+      corners.push_back(static_cast<Index>(apart.positions.size()));
+      apart.positions.push_back(torus.positions[v] +
+                                1e-7 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0));
+    }
+    if (random.below(2) == 0) {
+      std::ranges::reverse(corners);
+    }
+    apart.add_face(corners);
+  }
+  const PolygonMesh good = turned_outward(welded_cage(apart, 1e-5));
+  EXPECT_EQ(good.positions.size(), torus.positions.size());
+  EXPECT_EQ(good.face_count(), torus.face_count());
+  EXPECT_TRUE(is_sound(good));
+  EXPECT_NEAR(volume(good), volume(torus), 1e-5);
+  EXPECT_EQ(turned_outward(torus).corners().size(), torus.corners().size());
 }
 
 } // namespace

@@ -117,7 +117,10 @@ INSTANTIATE_TEST_SUITE_P(
                   }},
         NamedTool{"DeleteVertices", SelectionMode::vertex, delete_elements},
         NamedTool{"DeleteEdges", SelectionMode::edge, delete_elements},
-        NamedTool{"DeleteFaces", SelectionMode::face, delete_elements}),
+        NamedTool{"DeleteFaces", SelectionMode::face, // with the vertices between them
+                  [](const PolygonMesh& c, const Selection& s) {
+                    return delete_elements(c, grown(s, CageGraph(c)));
+                  }}),
     [](const auto& tool) { return tool.param.name; });
 
 TEST(MirrorEdit, DoesTheSameOnTheOtherSideWhereAToolWouldDoOtherwise) {

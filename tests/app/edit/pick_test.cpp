@@ -131,5 +131,34 @@ TEST(Pick, AnswersForTenThousandFaces) {
   EXPECT_LT(pick->distance, 12);
 }
 
+TEST(Pick, TakesEveryFaceThatIsSeenHoweverBent) {
+  PolygonMesh bent = test::quad_torus(12, 10);
+  Random random(11);
+  for (Vec3& p : bent.positions) {
+    p += 0.04 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  }
+  const Scene scene{bent};
+  std::vector<char> seen(bent.face_count(), 0);
+  for (int x = 0; x < 640; x += 4) {
+    for (int y = 0; y < 480; y += 4) {
+      if (const auto pick = scene.picker.face_at(scene.camera, {x, y})) {
+        ++seen[pick->element];
+      }
+    }
+  }
+  const Selection found =
+      scene.picker.within(scene.camera, rectangle({0, 0}, {640, 480}), SelectionMode::face, {});
+  int many = 0;
+  for (Index f = 0; f < bent.face_count(); ++f) {
+    const bool taken = std::ranges::binary_search(found.faces, f);
+    if (seen[f] > 12) { // of pixels in a grid of four
+      EXPECT_TRUE(taken) << "face " << f;
+      ++many;
+    }
+    EXPECT_TRUE(seen[f] > 0 || !taken) << "face " << f << " is hidden";
+  }
+  EXPECT_GT(many, 30);
+}
+
 } // namespace
 } // namespace cagewright::app
