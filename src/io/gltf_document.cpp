@@ -42,13 +42,32 @@ bool is_too_deep(std::string_view text) {
 struct Container {
   std::string_view json;
   std::string_view binary;
+  std::vector<GltfDocument::Chunk> chunks;
 };
+
+// The byte order mark of UTF-8, which editors put in front.
+std::string_view without_mark(std::string_view text) {
+  return text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
+}
+
+constexpr std::string_view binary_type("BIN\0", 4);
+
+// Chunks begin at multiples of four, and their lengths say so. Some writers pad without counting
+// the padding, others neither pad nor count.
+std::size_t begin_of_chunk(std::string_view bytes, std::size_t at) {
+  const auto is_known = [&](std::size_t begin) {
+    const std::string_view type = bytes.substr(std::min(begin + 4, bytes.size()), 4);
+    return type == "JSON" || type == binary_type;
+  };
+  const std::size_t padded = (at + 3) / 4 * 4;
+  return padded + 8 <= bytes.size() && !is_known(at) && is_known(padded) ? padded : at;
+}
 
 // GLB: "glTF", version, length; then chunks of length, type and content.
 Result<Container> open_container(const Source& source) {
   const std::string_view bytes = source.bytes;
   if (!bytes.starts_with("glTF")) {
-    return Container{bytes.substr(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0), {}};
+    return Container{without_mark(bytes), {}, {}};
   }
   if (bytes.size() < 20) {
     return source.error_at_byte(bytes.size(), "the file ends within the GLB header; it is cut "
@@ -69,6 +88,7 @@ Result<Container> open_container(const Source& source) {
   }
   Container container;
   for (std::size_t at = 12; at + 8 <= length;) {
+    at = begin_of_chunk(bytes.substr(0, length), at);
     const auto size = load<std::uint32_t>(&bytes[at]);
     const std::string_view type = bytes.substr(at + 4, 4);
     if (size > length - at - 8) {
@@ -79,10 +99,11 @@ Result<Container> open_container(const Source& source) {
     }
     const std::string_view content = bytes.substr(at + 8, size);
     if (type == "JSON" && container.json.empty()) {
-      container.json = content;
-    } else if (type == std::string_view("BIN\0", 4) && container.binary.empty()) {
+      container.json = without_mark(content);
+    } else if (type == binary_type && container.binary.empty()) {
       container.binary = content;
     }
+    container.chunks.push_back({type, content});
     at += 8 + size;
   }
   return container;
@@ -219,7 +240,12 @@ std::uint32_t load_index(const char* from, Component type) {
 }
 
 std::size_t components_of(const std::string& type) {
-  return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
+  return type == "SCALAR" ? 1
+         : type == "VEC2" ? 2
+         : type == "VEC3" ? 3
+         : type == "VEC4" ? 4
+         : type == "MAT4" ? 16
+                          : 0;
 }
 
 std::string numbered(std::string_view what, std::size_t index) {
@@ -286,6 +312,7 @@ Result<GltfDocument> GltfDocument::open(const Source& source,
   document.json_ = *std::move(json);
   document.json_text_ = container->json;
   document.binary_chunk_ = container->binary;
+  document.chunks_ = container->chunks;
   const Json& buffers = member(document.json_, "buffers");
   document.loaded_.resize(buffers.is_array() ? buffers.size() : 0);
   return document;
@@ -309,11 +336,7 @@ Result<std::string_view> GltfDocument::buffer(std::size_t index) {
     }
     bytes = *loaded_[index];
   }
-  if (bytes.size() < length) {
-    return source_.error(where + " should have " + std::to_string(length) + " bytes, but has " +
-                         std::to_string(bytes.size()) + std::string(export_again));
-  }
-  return bytes.substr(0, length);
+  return bytes.substr(0, length); // or what there is: it may be enough
 }
 
 bool GltfDocument::is_binary_chunk(std::size_t buffer) const {
@@ -322,41 +345,28 @@ bool GltfDocument::is_binary_chunk(std::size_t buffer) const {
 
 std::optional<std::filesystem::path> GltfDocument::file_of_buffer(std::size_t buffer) const {
   const std::string uri = to_text(member(element(member(json_, "buffers"), buffer), "uri"));
-  if (uri.empty() || uri.starts_with("data:") || !folder_) {
-    return std::nullopt;
-  }
-  return *folder_ / decode_percent(uri);
+  return uri.empty() || is_data_uri(uri) ? std::nullopt : file_of_uri(uri);
 }
 
 std::string& GltfDocument::changeable_buffer(std::size_t index) {
   if (!loaded_[index]) {
-    loaded_[index] = std::string(binary_chunk_);
+    loaded_[index] = is_binary_chunk(index) ? std::string(binary_chunk_) : std::string();
   }
   return *loaded_[index];
 }
 
-Result<GltfDocument::Place> GltfDocument::place_of(std::size_t index, std::size_t components) {
+Result<std::optional<GltfDocument::Place>> GltfDocument::place_of(std::size_t index,
+                                                                  std::size_t components) {
   const std::string where = numbered("accessor", index);
   const Json& accessor = element(member(json_, "accessors"), index);
   const Result<Layout> layout = layout_of(accessor, components, where);
   if (!layout) {
     return layout.error();
   }
-  const auto unsupported = [&](const std::string& what) {
-    return source_.error(where + what +
-                             ", which cannot be changed in place; export the model "
-                             "without compression, or write OBJ",
-                         ErrorCode::unsupported);
-  };
-  if (layout->type != Component::float32) {
-    return unsupported(" holds positions or normals as integers");
-  }
-  if (!member(accessor, "sparse").is_null()) {
-    return unsupported(" has sparse values");
-  }
   const Json& view_index = member(accessor, "bufferView");
-  if (view_index.is_null()) {
-    return unsupported(" stores no values");
+  if (layout->type != Component::float32 || !member(accessor, "sparse").is_null() ||
+      view_index.is_null()) {
+    return std::optional<Place>();
   }
   const std::size_t offset = to_size(member(accessor, "byteOffset")).value_or(0);
   const Result<Slice> from = slice(view_index, offset, *layout, true, where);
@@ -364,9 +374,82 @@ Result<GltfDocument::Place> GltfDocument::place_of(std::size_t index, std::size_
     return from.error();
   }
   const Json& view = element(member(json_, "bufferViews"), to_size(view_index).value_or(0));
-  return Place{to_size(member(view, "buffer")).value_or(0),
-               to_size(member(view, "byteOffset")).value_or(0) + offset, from->stride,
-               layout->count};
+  const Place place{to_size(member(view, "buffer")).value_or(0),
+                    to_size(member(view, "byteOffset")).value_or(0) + offset, from->stride,
+                    layout->count};
+  return shares_bytes(index, place, layout->element_size()) ? std::optional<Place>()
+                                                            : std::optional(place);
+}
+
+// Whether another accessor holds some of the bytes of this one. Interleaved attributes of one
+// stride may lie between each other; of different strides they count as one piece each.
+bool GltfDocument::shares_bytes(std::size_t accessor, const Place& place, std::size_t size) const {
+  const std::size_t end =
+      place.count == 0 ? place.begin : place.begin + (place.count - 1) * place.stride + size;
+  const Json& accessors = member(json_, "accessors");
+  const auto touches = [&](const Json& view, std::size_t offset, const Layout& layout) {
+    if (layout.count == 0 || to_size(member(view, "buffer")) != place.buffer) {
+      return false;
+    }
+    const std::size_t stride = to_size(member(view, "byteStride")).value_or(layout.element_size());
+    const std::size_t from = to_size(member(view, "byteOffset")).value_or(0) + offset;
+    if (from >= end) {
+      return false;
+    }
+    const std::size_t reach = end - from; // of interest
+    const bool ends_before =
+        (layout.count - 1) <= reach / std::max<std::size_t>(stride, 1) &&
+        from + (layout.count - 1) * stride + layout.element_size() <= place.begin;
+    if (ends_before) {
+      return false;
+    }
+    if (stride != place.stride || stride == 0) {
+      return true;
+    }
+    // Places within one stride, of which either may reach over its end.
+    const std::size_t shift = (from % stride + stride - place.begin % stride) % stride;
+    return shift < size || shift + layout.element_size() > stride;
+  };
+  for (std::size_t a = 0; accessors.is_array() && a < accessors.size(); ++a) {
+    const Json& other = accessors[a];
+    const auto view_of = [&](const Json& user) -> const Json& {
+      return element(member(json_, "bufferViews"),
+                     to_size(member(user, "bufferView")).value_or(~std::size_t{0}));
+    };
+    const std::optional<std::size_t> count = to_size(member(other, "count"));
+    const std::optional<Component> type = component_of(member(other, "componentType"));
+    const std::size_t components = components_of(to_text(member(other, "type")));
+    if (!count || !type) {
+      continue;
+    }
+    if (a != accessor && touches(view_of(other), to_size(member(other, "byteOffset")).value_or(0),
+                                 Layout{*count, components, *type, false})) {
+      return true;
+    }
+    const Json& sparse = member(other, "sparse");
+    const std::optional<std::size_t> few = to_size(member(sparse, "count"));
+    const Json& indices = member(sparse, "indices");
+    const Json& values = member(sparse, "values");
+    const std::optional<Component> index_type = component_of(member(indices, "componentType"));
+    if (few && index_type &&
+        (touches(view_of(indices), to_size(member(indices, "byteOffset")).value_or(0),
+                 Layout{*few, 1, *index_type, false}) ||
+         touches(view_of(values), to_size(member(values, "byteOffset")).value_or(0),
+                 Layout{*few, components, *type, false}))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Status GltfDocument::replace_json(std::string_view text) {
+  Result<Json> json = parse(source_, text);
+  if (!json) {
+    return json.error();
+  }
+  json_ = *std::move(json);
+  loaded_.resize(std::max(loaded_.size(), member(json_, "buffers").size()));
+  return success();
 }
 
 Result<std::string> GltfDocument::load_buffer(const Json& buffer, const std::string& where) {
@@ -374,28 +457,45 @@ Result<std::string> GltfDocument::load_buffer(const Json& buffer, const std::str
   if (uri.empty()) {
     return source_.error(where + " has no data" + std::string(export_again));
   }
-  if (uri.starts_with("data:")) {
-    const std::size_t comma = uri.find(',');
-    const std::string_view head = std::string_view(uri).substr(0, comma);
-    std::optional<std::string> bytes;
-    if (comma != uri.npos && head.ends_with(";base64")) {
-      bytes = decode_base64(std::string_view(uri).substr(comma + 1));
-    }
+  if (is_data_uri(uri)) {
+    std::optional<std::string> bytes = decode_data_uri(uri);
     return bytes ? Result<std::string>(*std::move(bytes))
                  : source_.error(where + " is not valid base64" + std::string(export_again));
   }
-  const std::filesystem::path name = decode_percent(uri);
-  if (!folder_ || uri.find("://") != uri.npos || name.is_absolute() ||
-      name.native().find('\0') != std::string::npos) {
+  return load_file(uri, where);
+}
+
+// A URI, but exporters also write names as they are, and those of Windows with its separators.
+Result<std::string> GltfDocument::load_file(const std::string& uri, const std::string& where) {
+  const std::optional<std::filesystem::path> path = file_of_uri(uri);
+  if (!path) {
     return source_.error(where + " is kept at " + in_quotes(uri) +
                              ", which cannot be reached; save the model as GLB",
                          ErrorCode::unsupported);
   }
-  const Result<FileBytes> file = read_file(*folder_ / name);
+  const Result<FileBytes> file = read_file(*path);
   if (!file) {
     return Error{file.error().code, source_.error(where + ": " + file.error().message).message};
   }
   return std::string(file->view());
+}
+
+std::optional<std::filesystem::path> GltfDocument::file_of_uri(const std::string& uri) const {
+  const std::filesystem::path decoded = decode_percent(uri);
+  if (!folder_ || uri.find("://") != uri.npos || decoded.is_absolute() ||
+      decoded.native().find('\0') != std::string::npos) {
+    return std::nullopt;
+  }
+  std::string slashes = decoded.string();
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  std::error_code ignored;
+  for (const std::filesystem::path& name :
+       {decoded, std::filesystem::path(uri), std::filesystem::path(slashes)}) {
+    if (name.is_relative() && std::filesystem::exists(*folder_ / name, ignored)) {
+      return *folder_ / name;
+    }
+  }
+  return *folder_ / decoded;
 }
 
 Result<GltfDocument::Layout> GltfDocument::layout_of(const Json& accessor, std::size_t components,
@@ -447,6 +547,13 @@ Result<GltfDocument::Slice> GltfDocument::slice(const Json& view_index, std::siz
                     (layout.count == 0 ||
                      (layout.element_size() <= length - offset &&
                       (layout.count - 1) <= (length - offset - layout.element_size()) / stride));
+  const std::size_t promised =
+      to_size(member(element(member(json_, "buffers"), *buffer_index), "byteLength")).value_or(0);
+  if (!fits && bytes->size() < promised) {
+    return source_.error(numbered("buffer", *buffer_index) + " should have " +
+                         std::to_string(promised) + " bytes, but has " +
+                         std::to_string(bytes->size()) + std::string(export_again));
+  }
   if (!fits) {
     return source_.error(where + " with " + counted(layout.count, "element") +
                          " reaches beyond its buffer" + std::string(export_again));

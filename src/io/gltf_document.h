@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -60,16 +61,33 @@ public:
     std::size_t count = 0;
   };
 
-  /// The place of an accessor of floats whose values can be changed where they are. Errors: those
-  /// of read_vectors(); unsupported (integers, sparse or not stored).
-  Result<Place> place_of(std::size_t accessor, std::size_t components);
+  /// The place of an accessor of floats whose values can be changed where they are; none where they
+  /// are stored otherwise (as integers, sparse, or not at all), or where other accessors hold some
+  /// of the same bytes. Errors: those of read_vectors().
+  Result<std::optional<Place>> place_of(std::size_t accessor, std::size_t components);
 
-  /// A buffer that place_of() named, to be changed; later reads see the changes.
+  /// A buffer to be changed or made longer; later reads see the changes.
   std::string& changeable_buffer(std::size_t index);
+
+  /// Makes room for buffers that the JSON does not name yet.
+  void reserve_buffers(std::size_t count) { loaded_.resize(std::max(loaded_.size(), count)); }
+
+  /// The bytes of a buffer with those beyond its promised length.
+  std::string_view whole_buffer(std::size_t index) { return changeable_buffer(index); }
+
+  /// Another JSON instead of the file's, for the same buffers and new ones behind them, which
+  /// changeable_buffer() fills. json_text() stays that of the file. Errors: malformed.
+  Status replace_json(std::string_view text);
 
   /// The JSON as it stands in the file, and the binary chunk of a GLB file.
   [[nodiscard]] std::string_view json_text() const { return json_text_; }
   [[nodiscard]] std::string_view binary_chunk() const { return binary_chunk_; }
+  /// All chunks of a GLB file in their order; none for JSON alone.
+  struct Chunk {
+    std::string_view type; ///< "JSON", "BIN\0" or another of four bytes
+    std::string_view content;
+  };
+  [[nodiscard]] const std::vector<Chunk>& chunks() const { return chunks_; }
   [[nodiscard]] const std::optional<std::filesystem::path>& folder() const { return folder_; }
 
   /// Whether a buffer is the binary chunk; else it has a URI.
@@ -88,8 +106,11 @@ private:
 
   Result<std::string_view> buffer(std::size_t index);
   Result<std::string> load_buffer(const Json& buffer, const std::string& where);
+  [[nodiscard]] std::optional<std::filesystem::path> file_of_uri(const std::string& uri) const;
+  Result<std::string> load_file(const std::string& uri, const std::string& where);
   Result<Slice> slice(const Json& view_index, std::size_t offset, const Layout& layout,
                       bool may_interleave, const std::string& where);
+  bool shares_bytes(std::size_t accessor, const Place& place, std::size_t size) const;
   Result<Layout> layout_of(const Json& accessor, std::size_t components,
                            const std::string& where) const;
   Status apply_sparse(const Json& sparse, const Layout& layout, const std::string& where,
@@ -100,6 +121,7 @@ private:
   Json json_;
   std::string_view json_text_;
   std::string_view binary_chunk_;
+  std::vector<Chunk> chunks_;
   std::vector<std::optional<std::string>>
       loaded_; // buffers that are not the unchanged binary chunk
 };

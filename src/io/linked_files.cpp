@@ -77,7 +77,7 @@ void find_in_gltf(const Source& source, Links& links) {
   const Json& images = member(document->json(), "images");
   for (std::size_t i = 0; images.is_array() && i < images.size(); ++i) {
     const std::string uri = to_text(member(images[i], "uri"));
-    if (!uri.starts_with("data:")) {
+    if (!is_data_uri(uri)) {
       links.add(decode_percent(uri));
     }
   }

@@ -16,13 +16,14 @@ std::optional<std::filesystem::path> folder_of(const std::filesystem::path& path
 
 } // namespace
 
-Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
+Result<ModelFile> ModelFile::open(const std::filesystem::path& path, Pose pose) {
   Result<FileBytes> bytes = read_file(path);
   if (!bytes) {
     return bytes.error();
   }
   ModelFile file;
   file.path_ = path;
+  file.pose_ = pose;
   file.name_ = path.string();
   file.on_disk_ = true;
   file.hold(std::move(*bytes));
@@ -41,9 +42,11 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   return read(std::move(file));
 }
 
-Result<ModelFile> ModelFile::parse(std::string bytes, MeshFormat format, std::string_view name) {
+Result<ModelFile> ModelFile::parse(std::string bytes, MeshFormat format, std::string_view name,
+                                   Pose pose) {
   ModelFile file;
   file.path_ = name;
+  file.pose_ = pose;
   file.name_ = name;
   file.format_ = format;
   file.hold(FileBytes(bytes));
@@ -60,6 +63,7 @@ void ModelFile::hold(FileBytes bytes) {
 
 Result<ModelFile> ModelFile::read(ModelFile file) {
   Reading reading;
+  reading.pose = file.pose_;
   Result<PolygonMesh> mesh = read_as(file.format_, Source{file.name_, file.bytes_->view()},
                                      folder_of(file.path_, file.on_disk_), reading);
   if (!mesh) {
@@ -73,12 +77,13 @@ Result<ModelFile> ModelFile::read(ModelFile file) {
 }
 
 Result<FileNormals> ModelFile::normals() const {
-  return normals_in({name_, bytes_->view()}, format_, folder_of(path_, on_disk_));
+  return normals_in({name_, bytes_->view()}, format_, folder_of(path_, on_disk_), pose_);
 }
 
 Result<MeshAttributes> ModelFile::attributes() const {
   MeshAttributes attributes;
   Reading reading;
+  reading.pose = pose_;
   reading.attributes = &attributes;
   const Result<PolygonMesh> mesh =
       read_as(format_, {name_, bytes_->view()}, folder_of(path_, on_disk_), reading);
@@ -87,7 +92,7 @@ Result<MeshAttributes> ModelFile::attributes() const {
 
 Status ModelFile::rewrite(std::span<const Vec3> positions, std::span<const Vec3> normals,
                           const std::filesystem::path& out) const {
-  return rewrite_as(format_, {name_, bytes_->view()}, mesh_, path_.parent_path(), positions,
+  return rewrite_as(format_, {name_, bytes_->view()}, mesh_, path_.parent_path(), pose_, positions,
                     normals, out);
 }
 

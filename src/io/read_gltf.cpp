@@ -1,9 +1,12 @@
+#include "io/gltf_nodes.h"
+#include "io/gltf_pose.h"
 #include "io/gltf_scene.h"
 #include "io/readers.h"
 
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace cagewright {
 namespace {
@@ -21,191 +24,106 @@ enum class Mode { triangles = 4, strip = 5, fan = 6 };
 
 class GltfReader {
 public:
-  explicit GltfReader(GltfDocument& document)
-      : document_(document), source_(document.source()), nodes_(member(document.json(), "nodes")) {}
+  GltfReader(GltfDocument& document, Pose pose)
+      : document_(document), source_(document.source()), pose_(pose), nodes_(document),
+        skins_(document, nodes_) {}
 
   Result<GltfScene> read() {
-    const Result<std::vector<std::size_t>> roots = find_roots();
-    if (!roots) {
-      return roots.error();
+    const Result<std::vector<GltfNodes::Shown>> shown = nodes_.shown();
+    if (!shown) {
+      return shown.error();
     }
-    if (const Status status = visit_nodes(*roots); !status) {
-      return status.error();
+    for (const GltfNodes::Shown& node : *shown) {
+      if (const Status status = add_mesh_of(node.node, node.transform); !status) {
+        return status.error();
+      }
     }
-    if (mesh_.face_count() == 0) {
-      return no_faces(source_);
+    note_other_scenes();
+    if (scene_.mesh.face_count() == 0) {
+      return nothing_to_see();
     }
     if (!mesh_.colors.empty()) {
       mesh_.colors.resize(mesh_.positions.size(), {1, 1, 1, 1});
     }
-    return GltfScene{std::move(mesh_), std::move(placements_), std::move(shown_)};
+    return std::move(scene_);
   }
 
 private:
-  struct Visit {
-    std::size_t node;
-    Transform transform; // of the parent
-  };
+  [[nodiscard]] const Json& scenes() const { return member(document_.json(), "scenes"); }
 
-  // The nodes of the default scene; of the first where none is; all that are no one's child where
-  // there is no scene.
-  Result<std::vector<std::size_t>> find_roots() {
-    const std::size_t count = nodes_.is_array() ? nodes_.size() : 0;
-    const std::size_t scene = to_size(member(document_.json(), "scene")).value_or(0);
-    const Json& scenes = member(document_.json(), "scenes");
-    if (scenes.is_array() && !scenes.empty()) {
-      if (scene >= scenes.size()) {
-        return source_.error("the default scene does not exist" + std::string(export_again));
-      }
-      return node_list(member(scenes[scene], "nodes"), "scene " + std::to_string(scene));
-    }
-    std::vector<char> is_child(count, 0);
-    for (std::size_t n = 0; n < count; ++n) {
-      const Result<std::vector<std::size_t>> children = children_of(n);
-      if (!children) {
-        return children.error();
-      }
-      for (const std::size_t child : *children) {
-        is_child[child] = 1;
-      }
-    }
-    std::vector<std::size_t> roots;
-    for (std::size_t n = 0; n < count; ++n) {
-      if (is_child[n] == 0) {
-        roots.push_back(n);
-      }
-    }
-    return roots;
+  [[nodiscard]] std::string name_of_scene(std::size_t index) const {
+    const std::string name = to_text(member(scenes()[index], "name"));
+    return name.empty() ? std::to_string(index) : in_quotes(name);
   }
 
-  Result<std::vector<std::size_t>> children_of(std::size_t node) {
-    return node_list(member(nodes_[node], "children"), "node " + std::to_string(node));
+  // Only scenes that show something else are worth a word.
+  void note_other_scenes() {
+    const std::size_t count = scenes().is_array() ? scenes().size() : 0;
+    const std::size_t shown = to_size(member(document_.json(), "scene")).value_or(0);
+    std::string others;
+    for (std::size_t s = 0; s < count && s < most_named; ++s) {
+      if (s != shown && member(scenes()[s], "nodes") != member(scenes()[shown], "nodes")) {
+        others.append(others.empty() ? "" : ", ").append(name_of_scene(s));
+      }
+    }
+    if (!others.empty()) {
+      others_ = others + (count > most_named ? " and more" : "");
+      scene_.notes.add(
+          "other_scenes", [&] { return one_line(source_.name); },
+          "the scene " + name_of_scene(shown) + " is read; left out are " + others_);
+    }
   }
 
-  Result<std::vector<std::size_t>> node_list(const Json& list, const std::string& where) {
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; list.is_array() && i < list.size(); ++i) {
-      const std::optional<std::size_t> node = to_size(list[i]);
-      if (!node || !nodes_.is_array() || *node >= nodes_.size()) {
-        return source_.error(where + " refers to a node that does not exist" +
-                             std::string(export_again));
-      }
-      found.push_back(*node);
+  [[nodiscard]] Error nothing_to_see() const {
+    if (has_lines_) {
+      return source_.error("has no faces, only points or lines; export the surface as triangles");
     }
-    return found;
+    if (!others_.empty()) {
+      return source_.error("has no faces in its scene; make another the default one (" + others_ +
+                           ")");
+    }
+    return no_faces(source_);
   }
 
-  // Depth first, children in their order. A node that is met twice belongs to two parents or to
-  // itself.
-  Status visit_nodes(const std::vector<std::size_t>& roots) {
-    std::vector<char> visited(nodes_.is_array() ? nodes_.size() : 0, 0);
-    std::vector<Visit> stack;
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
-      stack.push_back({*root, Transform::Identity()});
-    }
-    while (!stack.empty()) {
-      const Visit visit = stack.back();
-      stack.pop_back();
-      if (visited[visit.node] != 0) {
-        return source_.error("node " + std::to_string(visit.node) + " stands in the scene twice" +
-                             std::string(export_again));
-      }
-      visited[visit.node] = 1;
-      const Result<Transform> local = transform_of(visit.node);
-      const Result<std::vector<std::size_t>> children = children_of(visit.node);
-      if (!local || !children) {
-        return local ? children.error() : local.error();
-      }
-      const Transform global = visit.transform * *local;
-      if (const Status status = add_mesh_of(visit.node, global); !status) {
-        return status;
-      }
-      for (auto child = children->rbegin(); child != children->rend(); ++child) {
-        stack.push_back({*child, global});
-      }
-    }
-    return success();
-  }
-
-  Result<Transform> transform_of(std::size_t node) {
-    const Json& json = nodes_[node];
-    Transform transform = Transform::Identity();
-    std::vector<double> m;
-    std::vector<double> t;
-    std::vector<double> r;
-    std::vector<double> s;
-    if (!read_numbers(member(json, "matrix"), 16, m) ||
-        !read_numbers(member(json, "translation"), 3, t) ||
-        !read_numbers(member(json, "rotation"), 4, r) ||
-        !read_numbers(member(json, "scale"), 3, s)) {
-      return source_.error("node " + std::to_string(node) + " has a transform that is not one" +
-                           std::string(export_again));
-    }
-    if (!m.empty()) { // column after column
-      transform.matrix().topRows<3>() = Eigen::Map<const Eigen::Matrix4d>(m.data()).topRows<3>();
-      return transform;
-    }
-    if (!t.empty()) {
-      transform.translate(Vec3(t[0], t[1], t[2]));
-    }
-    if (!r.empty()) {
-      const Eigen::Quaterniond rotation(r[3], r[0], r[1], r[2]);
-      if (rotation.squaredNorm() > 0) {
-        transform.rotate(rotation.normalized());
-      }
-    }
-    if (!s.empty()) {
-      transform.scale(Vec3(s[0], s[1], s[2]));
-    }
-    return transform;
-  }
-
-  // A list of `count` numbers, or none where the member is missing; false for anything else.
-  static bool read_numbers(const Json& list, std::size_t count, std::vector<double>& numbers) {
-    if (list.is_null()) {
-      return true;
-    }
-    if (!list.is_array() || list.size() != count) {
-      return false;
-    }
-    for (const Json& item : list) {
-      if (!item.is_number()) {
-        return false;
-      }
-      numbers.push_back(item.get<double>());
-    }
-    return true;
-  }
-
-  // Rigged meshes are treated like others. By the letter of glTF the joints place them and their
-  // own node does not; but exporters put mesh and joints under the same root, and at rest the
-  // joints undo their own bind pose. What is left is the root's transform, such as the turn from
-  // z up to y up, and that is what the node's chain gives, without knowing any pose.
   Status add_mesh_of(std::size_t node, const Transform& transform) {
-    const Json& json = nodes_[node];
+    const Json& json = nodes_.node(node);
     if (member(json, "mesh").is_null()) {
       return success();
     }
     const std::optional<std::size_t> index = to_size(member(json, "mesh"));
     const Json& meshes = member(document_.json(), "meshes");
+    const std::string where = "node " + std::to_string(node);
     if (!index || !meshes.is_array() || *index >= meshes.size()) {
-      return source_.error("node " + std::to_string(node) +
-                           " refers to a mesh that does not exist" + std::string(export_again));
+      return source_.error(where + " refers to a mesh that does not exist" +
+                           std::string(export_again));
     }
     if (!member(member(json, "extensions"), "EXT_mesh_gpu_instancing").is_null()) {
-      return source_.error("node " + std::to_string(node) +
-                               " uses the extension EXT_mesh_gpu_instancing, which is not "
-                               "supported; export the instances as nodes",
+      return source_.error(where + " uses the extension EXT_mesh_gpu_instancing, which is not "
+                                   "supported; export the instances as nodes",
                            ErrorCode::unsupported);
     }
+    User user{node, *index, {}, {}, transform};
+    if (const Json& skin = member(json, "skin"); !skin.is_null()) {
+      user.skin = to_size(skin);
+      const Result<std::vector<std::size_t>> joints =
+          skins_.joints(user.skin.value_or(~std::size_t{0}));
+      if (!joints) {
+        return source_.error(where + " refers to a skin that does not exist, or has no joints" +
+                             std::string(export_again));
+      }
+    }
+    if (pose_ == Pose::shown) {
+      Result<std::vector<double>> weights = morph_weights(source_, json, meshes[*index], where);
+      if (!weights) {
+        return weights.error();
+      }
+      user.morph_weights = *std::move(weights);
+    }
     const std::size_t faces_before = mesh_.face_count();
-    bases_.clear();
-    node_ = node;
+    known_.clear();
     const Json& primitives = member(meshes[*index], "primitives");
     for (std::size_t p = 0; primitives.is_array() && p < primitives.size(); ++p) {
-      const std::string where =
-          "mesh " + std::to_string(*index) + ", primitive " + std::to_string(p);
-      if (const Status status = add_primitive(primitives[p], transform, where); !status) {
+      if (const Status status = add_primitive(primitives[p], p, user); !status) {
         return status;
       }
     }
@@ -226,11 +144,25 @@ private:
     mesh_.group_names.push_back(name);
   }
 
-  Status add_primitive(const Json& primitive, const Transform& transform,
-                       const std::string& where) {
+  /// A node that shows a mesh.
+  struct User {
+    std::size_t node = 0;
+    std::size_t mesh = 0;
+    std::optional<std::size_t> skin;
+    std::vector<double> morph_weights;
+    Transform transform;
+  };
+
+  Status add_primitive(const Json& primitive, std::size_t number, const User& user) {
+    const std::string where =
+        "mesh " + std::to_string(user.mesh) + ", primitive " + std::to_string(number);
     const std::size_t mode = to_size(member(primitive, "mode")).value_or(4);
     if (mode < 4) {
-      return success(); // points and lines
+      has_lines_ = true;
+      scene_.notes.add(
+          "points_and_lines", [&] { return one_line(source_.name) + ": " + where; },
+          "draws points or lines, which are left out");
+      return success();
     }
     if (mode > 6) {
       return source_.error(where + " has a mode that glTF does not know" +
@@ -244,42 +176,24 @@ private:
     if (const Status status = check_compression(primitive, *accessor, where); !status) {
       return status;
     }
-    const Result<Vertices> vertices = add_vertices(*accessor, attributes, transform);
-    if (!vertices) {
-      return vertices.error();
+    const Result<std::size_t> placement = place_vertices(*accessor, primitive, user);
+    if (!placement) {
+      return placement.error();
     }
+    const std::size_t count = scene_.placements[*placement].count;
     const std::size_t first_corner = mesh_.corners().size();
-    std::vector<std::uint32_t> indices;
-    if (member(primitive, "indices").is_null()) {
-      indices.resize(vertices->count);
-      for (std::size_t i = 0; i < indices.size(); ++i) {
-        indices[i] = static_cast<std::uint32_t>(i);
-      }
-    } else {
-      const std::optional<std::size_t> list = to_size(member(primitive, "indices"));
-      Result<std::vector<std::uint32_t>> read =
-          list
-              ? document_.read_indices(*list)
-              : source_.error(where + " has indices that do not exist" + std::string(export_again));
-      if (!read) {
-        return read.error();
-      }
-      indices = *std::move(read);
+    const Result<std::vector<std::uint32_t>> indices = indices_of(primitive, count, where);
+    if (!indices) {
+      return indices.error();
     }
-    const auto largest = std::max_element(indices.begin(), indices.end());
-    if (largest != indices.end() && *largest >= vertices->count) {
-      return source_.error(no_such_vertex(where, std::to_string(*largest), vertices->count));
-    }
-    if (mesh_.corners().size() + 3 * indices.size() > most_corners(source_)) {
+    if (mesh_.corners().size() + 3 * indices->size() > most_corners(source_)) {
       return source_.error("shows more than 22 million triangles; simplify the model",
                            ErrorCode::too_large);
     }
-    // A transform that mirrors turns the triangles inside out (glTF 2.0, 3.7.4).
-    add_triangles(indices, static_cast<Mode>(mode), vertices->base,
-                  transform.linear().determinant() < 0);
-    shown_.push_back({vertices->placement, to_size(member(attributes, "NORMAL")),
-                      to_size(member(attributes, "TANGENT")), first_corner,
-                      mesh_.corners().size()});
+    add_triangles(*indices, static_cast<Mode>(mode), scene_.placements[*placement]);
+    scene_.shown.push_back(
+        {user.node, user.mesh, number, *placement, to_size(member(attributes, "NORMAL")),
+         to_size(member(attributes, "TANGENT")), first_corner, mesh_.corners().size()});
     return success();
   }
 
@@ -297,30 +211,64 @@ private:
                          ErrorCode::unsupported);
   }
 
-  struct Vertices {
-    Index base = 0;
-    std::size_t count = 0;
-    std::size_t placement = 0;
-  };
+  Result<std::vector<std::uint32_t>> indices_of(const Json& primitive, std::size_t count,
+                                                const std::string& where) {
+    std::vector<std::uint32_t> indices;
+    if (member(primitive, "indices").is_null()) {
+      indices.resize(count);
+      for (std::size_t i = 0; i < indices.size(); ++i) {
+        indices[i] = static_cast<std::uint32_t>(i);
+      }
+      return indices;
+    }
+    const std::optional<std::size_t> list = to_size(member(primitive, "indices"));
+    if (!list) {
+      return source_.error(where + " has indices that do not exist" + std::string(export_again));
+    }
+    Result<std::vector<std::uint32_t>> read = document_.read_indices(*list);
+    if (!read) {
+      return read.error();
+    }
+    const auto largest = std::max_element(read->begin(), read->end());
+    if (largest != read->end() && *largest >= count) {
+      return source_.error(no_such_vertex(where, std::to_string(*largest), count));
+    }
+    return read;
+  }
 
   // Primitives of one mesh often share their vertices and differ in their indices.
-  Result<Vertices> add_vertices(std::size_t accessor, const Json& attributes,
-                                const Transform& transform) {
-    if (const auto known = bases_.find(accessor); known != bases_.end()) {
+  Result<std::size_t> place_vertices(std::size_t accessor, const Json& primitive,
+                                     const User& user) {
+    const Json& attributes = member(primitive, "attributes");
+    const GltfMorph morph = morph_of(primitive, "POSITION", user.morph_weights);
+    std::pair key(std::string(), morph.accessors);
+    for (const auto& [name, value] : attributes.items()) {
+      if (name == "POSITION" || name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) {
+        key.first.append(name).append(value.dump());
+      }
+    }
+    if (const auto known = known_.find(key); known != known_.end()) {
       return known->second;
     }
     const Result<std::vector<double>> values = document_.read_vectors(accessor, 3);
     if (!values) {
       return values.error();
     }
-    const Vertices vertices{static_cast<Index>(mesh_.positions.size()), values->size() / 3,
-                            placements_.size()};
-    if (mesh_.positions.size() + vertices.count > most_corners(source_)) {
+    const std::size_t count = values->size() / 3;
+    if (mesh_.positions.size() + count > most_corners(source_)) {
       return source_.error("shows more than 67 million vertices; simplify the model",
                            ErrorCode::too_large);
     }
-    for (std::size_t v = 0; v < vertices.count; ++v) {
-      const Vec3 p = transform * Vec3((*values)[3 * v], (*values)[3 * v + 1], (*values)[3 * v + 2]);
+    GltfPlacement placement{
+        user.node, accessor,          static_cast<Index>(mesh_.positions.size()),
+        count,     user.transform,    {},
+        {},        user.morph_weights};
+    if (const Status status = apply_pose(morph, attributes, user, placement); !status) {
+      return status.error();
+    }
+    for (std::size_t v = 0; v < count; ++v) {
+      const Vec3 stored((*values)[3 * v], (*values)[3 * v + 1], (*values)[3 * v + 2]);
+      const Vec3 p = placement.transform_of(v) * Vec3(stored + placement.shift_of(v));
       if (!p.allFinite()) {
         return source_.error("accessor " + std::to_string(accessor) + ": vertex " +
                              std::to_string(v) + " has a coordinate that is not a finite number" +
@@ -328,12 +276,37 @@ private:
       }
       mesh_.positions.push_back(p);
     }
-    if (const Status status = add_colors(attributes, vertices.count); !status) {
+    if (const Status status = add_colors(attributes, count); !status) {
       return status.error();
     }
-    bases_.emplace(accessor, vertices);
-    placements_.push_back({node_, accessor, vertices.base, vertices.count, transform});
-    return vertices;
+    scene_.placements.push_back(std::move(placement));
+    known_.emplace(std::move(key), scene_.placements.size() - 1);
+    return scene_.placements.size() - 1;
+  }
+
+  Status apply_pose(const GltfMorph& morph, const Json& attributes, const User& user,
+                    GltfPlacement& placement) {
+    Result<std::vector<Vec3>> shifts = morph_shifts(document_, morph, placement.count);
+    if (!shifts) {
+      return shifts.error();
+    }
+    placement.shifts = *std::move(shifts);
+    if (!user.skin) {
+      return success();
+    }
+    if (pose_ == Pose::bind) {
+      // Where a mesh was bound its joints undo their inverse bind matrices, and all else is
+      // ignored.
+      placement.transform =
+          member(attributes, "JOINTS_0").is_null() ? user.transform : Transform::Identity();
+      return success();
+    }
+    Result<std::vector<Transform>> blends = skins_.blend(*user.skin, attributes, placement.count);
+    if (!blends) {
+      return blends.error();
+    }
+    placement.blends = *std::move(blends);
+    return success();
   }
 
   Status add_colors(const Json& attributes, std::size_t count) {
@@ -362,16 +335,27 @@ private:
     return success();
   }
 
-  void add_triangles(const std::vector<std::uint32_t>& indices, Mode mode, Index base,
-                     bool is_mirrored) {
+  // A transform that mirrors turns the triangles inside out (glTF 2.0, 3.7.4). Of a skinned mesh
+  // that is the joints' doing; where they disagree over a triangle, the greater part decides.
+  void add_triangles(const std::vector<std::uint32_t>& indices, Mode mode,
+                     const GltfPlacement& placement) {
+    const auto mirrors = [&](std::size_t v) {
+      return placement.transform_of(v).linear().determinant() < 0;
+    };
+    const bool all_mirrored = placement.blends.empty() && mirrors(0);
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-      const Index i = base + indices[a];
-      const Index j = base + indices[b];
-      const Index k = base + indices[c];
+      const Index i = placement.base + indices[a];
+      const Index j = placement.base + indices[b];
+      const Index k = placement.base + indices[c];
       // In strips and fans a repeated corner only leads to the next part; lists are kept as stored.
-      if (mode == Mode::triangles || (i != j && j != k && k != i)) {
-        is_mirrored ? mesh_.add_face({i, k, j}) : mesh_.add_face({i, j, k});
+      if (mode != Mode::triangles && (i == j || j == k || k == i)) {
+        return;
       }
+      const bool is_mirrored =
+          placement.blends.empty()
+              ? all_mirrored
+              : mirrors(indices[a]) + mirrors(indices[b]) + mirrors(indices[c]) >= 2;
+      is_mirrored ? mesh_.add_face({i, k, j}) : mesh_.add_face({i, j, k});
     };
     const std::size_t step = mode == Mode::triangles ? 3 : 1;
     for (std::size_t i = 0; i + 2 < indices.size(); i += step) {
@@ -385,31 +369,38 @@ private:
     }
   }
 
+  static constexpr std::size_t most_named = 8; // scenes in a message
+
   GltfDocument& document_;
   const Source& source_;
-  const Json& nodes_;
-  PolygonMesh mesh_;
-  std::vector<GltfPlacement> placements_;
-  std::vector<GltfShown> shown_;
-  std::size_t node_ = 0;                  // under way
-  std::map<std::size_t, Vertices> bases_; // of the mesh under way, by accessor
+  const Pose pose_;
+  GltfNodes nodes_;
+  GltfSkins skins_;
+  GltfScene scene_;
+  PolygonMesh& mesh_ = scene_.mesh;
+  bool has_lines_ = false; // or points
+  std::string others_;     // scenes that are left out
+  // Placements of the node under way, by the attributes and targets that place vertices.
+  std::map<std::pair<std::string, std::vector<std::size_t>>, std::size_t> known_;
 };
 
 } // namespace
 
-Result<GltfScene> read_gltf_scene(GltfDocument& document) {
-  return GltfReader(document).read();
+Result<GltfScene> read_gltf_scene(GltfDocument& document, Pose pose) {
+  return GltfReader(document, pose).read();
 }
 
 Result<PolygonMesh> read_gltf(const Source& source,
                               const std::optional<std::filesystem::path>& folder,
                               Reading& reading) {
-  static_cast<void>(reading);
   Result<GltfDocument> document = GltfDocument::open(source, folder);
   if (!document) {
     return document.error();
   }
-  Result<GltfScene> scene = read_gltf_scene(*document);
+  Result<GltfScene> scene = read_gltf_scene(*document, reading.pose);
+  if (scene) {
+    reading.notes = std::move(scene->notes);
+  }
   return scene ? Result<PolygonMesh>(std::move(scene->mesh)) : scene.error();
 }
 

@@ -92,13 +92,15 @@ void normalize_colors(PolygonMesh& mesh) {
   }
 }
 
-Result<PolygonMesh> read_mesh(std::string_view bytes, MeshFormat format, std::string_view name) {
+Result<PolygonMesh> read_mesh(std::string_view bytes, MeshFormat format, std::string_view name,
+                              Pose pose) {
   Reading reading;
+  reading.pose = pose;
   return read_as(format, Source{name, bytes}, {}, reading);
 }
 
-Result<PolygonMesh> read_mesh(const std::filesystem::path& path) {
-  Result<ModelFile> file = ModelFile::open(path);
+Result<PolygonMesh> read_mesh(const std::filesystem::path& path, Pose pose) {
+  Result<ModelFile> file = ModelFile::open(path, pose);
   return file ? Result<PolygonMesh>(std::move(*file).take_mesh()) : file.error();
 }
 

@@ -6,6 +6,7 @@
 #include "io/source.h"
 #include <cagewright/core/result.h>
 #include <cagewright/io/mesh_format.h>
+#include <cagewright/io/pose.h>
 #include <cagewright/io/rewrite_positions.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
@@ -46,11 +47,11 @@ Result<PolygonMesh> read_as(MeshFormat format, const Source& source,
 
 /// The normals of a file that read_as() has accepted.
 Result<FileNormals> normals_in(const Source& source, MeshFormat format,
-                               const std::optional<std::filesystem::path>& folder);
+                               const std::optional<std::filesystem::path>& folder, Pose pose);
 
 /// See rewrite_positions(), for a file that read_as() has accepted as `mesh`.
 Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& mesh,
-                  const std::filesystem::path& folder, std::span<const Vec3> positions,
+                  const std::filesystem::path& folder, Pose pose, std::span<const Vec3> positions,
                   std::span<const Vec3> normals, const std::filesystem::path& out);
 
 /// The largest value of a channel, whatever the scale: for what a file leaves out.

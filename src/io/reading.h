@@ -5,6 +5,7 @@
 #include "io/source.h"
 #include <cagewright/io/mesh_attributes.h>
 #include <cagewright/io/model_file.h>
+#include <cagewright/io/pose.h>
 #include <cagewright/io/rewrite_positions.h>
 
 #include <cstddef>
@@ -52,6 +53,7 @@ private:
 
 /// What read_mesh() and its like want of a reader beside the mesh.
 struct Reading {
+  Pose pose = Pose::shown; ///< of a rigged model
   NoteList notes;
   FileNormals* normals = nullptr;       ///< to be filled, or null
   MeshAttributes* attributes = nullptr; ///< to be filled, or null

@@ -2,6 +2,7 @@
 
 #include "io/atomic_file.h"
 #include "io/binary.h"
+#include "io/gltf_json_text.h"
 #include "io/gltf_scene.h"
 #include "io/number_text.h"
 #include "io/uri.h"
@@ -9,127 +10,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace cagewright {
 namespace {
 
-/// A value in a JSON text: its bytes are [begin, end).
-struct Span {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
-
-/// Finds values in a text that the parser has accepted.
-class JsonText {
-public:
-  explicit JsonText(std::string_view text) : text_(text) {}
-
-  [[nodiscard]] Span whole() const { return {blanks(0), text_.size()}; }
-
-  /// The member of the object that begins at `object`; of several of one name the last, as the
-  /// parser takes it.
-  [[nodiscard]] std::optional<Span> member(Span object, std::string_view name) const {
-    std::optional<Span> found;
-    std::size_t at = blanks(object.begin + 1);
-    while (at < text_.size() && text_[at] == '"') {
-      const std::size_t key_end = end_of_string(at);
-      const std::string_view key = text_.substr(at + 1, key_end - at - 2);
-      const std::size_t begin = blanks(blanks(key_end) + 1); // past the colon
-      const std::size_t end = end_of_value(begin);
-      if (key == name) {
-        found = Span{begin, end};
-      }
-      at = next_item(end);
-    }
-    return found;
-  }
-
-  /// An element of the array that begins at `array`.
-  [[nodiscard]] std::optional<Span> element(Span array, std::size_t index) const {
-    std::size_t at = blanks(array.begin + 1);
-    for (; at < text_.size() && text_[at] != ']'; --index) {
-      const std::size_t end = end_of_value(at);
-      if (index == 0) {
-        return Span{at, end};
-      }
-      at = next_item(end);
-    }
-    return std::nullopt;
-  }
-
-  /// text[list][index][name] from the outermost object.
-  [[nodiscard]] std::optional<Span> find(std::string_view list, std::size_t index,
-                                         std::string_view name) const {
-    const std::optional<Span> array = member(whole(), list);
-    const std::optional<Span> object = array ? element(*array, index) : std::nullopt;
-    return object ? member(*object, name) : std::nullopt;
-  }
-
-private:
-  [[nodiscard]] std::size_t blanks(std::size_t at) const {
-    return std::min(text_.find_first_not_of(" \t\r\n", at), text_.size());
-  }
-
-  [[nodiscard]] std::size_t next_item(std::size_t end) const {
-    const std::size_t at = blanks(end);
-    return at < text_.size() && text_[at] == ',' ? blanks(at + 1) : at;
-  }
-
-  [[nodiscard]] std::size_t end_of_string(std::size_t at) const {
-    for (++at; at < text_.size() && text_[at] != '"'; ++at) {
-      at += text_[at] == '\\' ? 1 : 0;
-    }
-    return std::min(at + 1, text_.size());
-  }
-
-  [[nodiscard]] std::size_t end_of_value(std::size_t at) const {
-    std::size_t depth = 0;
-    while (at < text_.size()) {
-      const char c = text_[at];
-      if (c == '"') {
-        at = end_of_string(at);
-      } else if (c == '[' || c == '{') {
-        ++depth;
-        ++at;
-      } else if (c == ']' || c == '}') {
-        if (depth == 0) {
-          return at;
-        }
-        --depth;
-        ++at;
-      } else if (depth == 0 && (c == ',' || c == ' ' || c == '\t' || c == '\r' || c == '\n')) {
-        return at;
-      } else {
-        ++at;
-        continue; // within a number or a name
-      }
-      if (depth == 0) {
-        return at;
-      }
-    }
-    return at;
-  }
-
-  std::string_view text_;
-};
-
-using Float3 = std::array<float, 3>;
-
-Float3 to_floats(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
+// How far a vertex may stand from where it should, relative to the largest coordinate: floats keep
+// seven digits, and transforms take some.
+constexpr double allowed_error = 1e-5;
 
 /// The normals of one accessor under one placement.
 struct NormalBlock {
   std::size_t placement = 0;
   std::size_t accessor = 0;
-  Index base = 0; // of its first normal in FileNormals
+  Index base = 0;           ///< of its first normal in FileNormals
+  std::vector<Vec3> stored; ///< in the mesh's frame
+  std::vector<Vec3> shifts; ///< what the morph targets add, or none
 };
 
 struct GltfNormals {
@@ -137,12 +40,47 @@ struct GltfNormals {
   std::vector<NormalBlock> blocks;
 };
 
-Vec3 shown_normal(const GltfPlacement& placement, const Vec3& stored) {
+std::vector<Vec3> to_points(const std::vector<double>& values) {
+  std::vector<Vec3> points;
+  points.reserve(values.size() / 3);
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    points.emplace_back(values[i], values[i + 1], values[i + 2]);
+  }
+  return points;
+}
+
+Vec3 shown_normal(const Eigen::Affine3d& transform, const Vec3& stored) {
   // By the cofactors, which exist for any transform: the inverse transposed but for its scale.
-  const Eigen::Matrix3d& m = placement.transform.linear();
+  const Eigen::Matrix3d& m = transform.linear();
   const Vec3 normal = m.col(1).cross(m.col(2)) * stored.x() +
                       m.col(2).cross(m.col(0)) * stored.y() + m.col(0).cross(m.col(1)) * stored.z();
   return (m.determinant() < 0 ? Vec3(-normal) : normal).stableNormalized();
+}
+
+const Json& primitive_of(const Json& json, const GltfShown& shown) {
+  return element(member(element(member(json, "meshes"), shown.mesh), "primitives"),
+                 shown.primitive);
+}
+
+Result<NormalBlock> read_block(GltfDocument& document, const GltfScene& scene,
+                               const GltfShown& shown, Index base) {
+  const GltfPlacement& placement = scene.placements[shown.placement];
+  const Result<std::vector<double>> values = document.read_vectors(*shown.normals, 3);
+  if (!values) {
+    return values.error();
+  }
+  if (values->size() != 3 * placement.count) {
+    return document.source().error("accessor " + std::to_string(*shown.normals) +
+                                   " should have a normal for each vertex" +
+                                   std::string(export_again));
+  }
+  Result<std::vector<Vec3>> shifts = morph_shifts(
+      document, morph_of(primitive_of(document.json(), shown), "NORMAL", placement.morph_weights),
+      placement.count);
+  if (!shifts) {
+    return shifts.error();
+  }
+  return NormalBlock{shown.placement, *shown.normals, base, to_points(*values), *std::move(shifts)};
 }
 
 Result<GltfNormals> normals_of(GltfDocument& document, const GltfScene& scene) {
@@ -156,21 +94,17 @@ Result<GltfNormals> normals_of(GltfDocument& document, const GltfScene& scene) {
     const auto [block, is_new] = known.try_emplace({shown.placement, *shown.normals},
                                                    static_cast<Index>(result.file.normals.size()));
     if (is_new) {
-      const Result<std::vector<double>> values = document.read_vectors(*shown.normals, 3);
-      if (!values) {
-        return values.error();
-      }
-      if (values->size() != 3 * placement.count) {
-        return document.source().error("accessor " + std::to_string(*shown.normals) +
-                                       " should have a normal for each vertex" +
-                                       std::string(export_again));
+      Result<NormalBlock> read = read_block(document, scene, shown, block->second);
+      if (!read) {
+        return read.error();
       }
       for (std::size_t v = 0; v < placement.count; ++v) {
-        const Vec3 stored((*values)[3 * v], (*values)[3 * v + 1], (*values)[3 * v + 2]);
-        const Vec3 normal = shown_normal(placement, stored);
+        const Vec3 local =
+            read->stored[v] + (read->shifts.empty() ? Vec3(0, 0, 0) : read->shifts[v]);
+        const Vec3 normal = shown_normal(placement.transform_of(v), local);
         result.file.normals.push_back(normal.allFinite() ? normal : Vec3(Vec3::Zero()));
       }
-      result.blocks.push_back({shown.placement, *shown.normals, block->second});
+      result.blocks.push_back(*std::move(read));
     }
     result.file.of_corner.resize(scene.mesh.corners().size(), FileNormals::none);
     for (std::size_t c = shown.first_corner; c < shown.end_corner; ++c) {
@@ -180,258 +114,678 @@ Result<GltfNormals> normals_of(GltfDocument& document, const GltfScene& scene) {
   return result;
 }
 
-/// Changes floats in the buffers of a document, and knows which are changed.
-class Patcher {
-public:
-  explicit Patcher(GltfDocument& document) : document_(document) {}
+/// New values of an accessor, element after element; none: as they are.
+using Floats = std::vector<float>;
 
-  /// Gives elements of an accessor other values: all at once, each at most one value.
-  Status set(std::size_t accessor, std::size_t components,
-             const std::map<std::size_t, Float3>& values) {
-    const Result<GltfDocument::Place> place = document_.place_of(accessor, components);
-    if (!place) {
-      return place.error();
+void append(Floats& floats, const Vec3& v) {
+  for (const double x : v) {
+    floats.push_back(static_cast<float>(x));
+  }
+}
+
+Floats to_floats(const std::vector<double>& values) {
+  Floats floats;
+  floats.reserve(values.size());
+  for (const double value : values) {
+    floats.push_back(static_cast<float>(value));
+  }
+  return floats;
+}
+
+/// The point that a transform takes to `to`, or as near to it as can be where it flattens.
+Vec3 taken_back(const Eigen::Affine3d& transform, const Vec3& from, const Vec3& from_shown,
+                const Vec3& to) {
+  const Eigen::Matrix3d& m = transform.linear();
+  const double size = m.lpNorm<Eigen::Infinity>();
+  if (std::abs(m.determinant()) > 1e-6 * size * size * size) {
+    return m.inverse() * (to - transform.translation());
+  }
+  // The least squares of a shift, damped: what is thinner than 1e-5 floats cannot tell from flat.
+  const Eigen::Matrix3d square =
+      m.transpose() * m + 1e-10 * std::max(size * size, 1e-300) * Eigen::Matrix3d::Identity();
+  return from + square.inverse() * (m.transpose() * (to - from_shown));
+}
+
+double largest_coordinate(std::span<const Vec3> positions) {
+  double size = 0;
+  for (const Vec3& p : positions) {
+    size = std::max(size, p.lpNorm<Eigen::Infinity>());
+  }
+  return size;
+}
+
+/// How far vertices under a placement may stand from where they should.
+double tolerance(const GltfPlacement& placement, double size) {
+  double around = placement.transform.translation().lpNorm<Eigen::Infinity>();
+  for (const Eigen::Affine3d& blend : placement.blends) {
+    around = std::max(around, blend.translation().lpNorm<Eigen::Infinity>());
+  }
+  return allowed_error * std::max(size, around);
+}
+
+Error flattened(const Source& source, const GltfPlacement& placement, std::size_t count,
+                std::size_t first) {
+  const std::string where = "node " + std::to_string(placement.node);
+  return placement.blends.empty()
+             ? source.error(where + " flattens its mesh, which cannot be changed in place; apply "
+                                    "the scale first, or write OBJ",
+                            ErrorCode::unsupported)
+             : source.error(where + ": " + counted(count, "vertex") + " (the first is " +
+                                std::to_string(first) +
+                                ") cannot be moved there, because the joints flatten the mesh; "
+                                "deform the bind pose (--pose bind), or write OBJ",
+                            ErrorCode::unsupported);
+}
+
+/// The positions to store for one placement.
+Result<std::optional<Floats>> moved_positions(GltfDocument& document, const GltfScene& scene,
+                                              const GltfPlacement& placement,
+                                              std::span<const Vec3> positions, double size) {
+  const Result<std::vector<double>> stored = document.read_vectors(placement.positions, 3);
+  if (!stored) {
+    return stored.error();
+  }
+  const std::vector<Vec3> before = to_points(*stored);
+  const double allowed = tolerance(placement, size);
+  Floats values;
+  values.reserve(stored->size());
+  std::size_t beyond = 0;
+  std::size_t first_beyond = 0;
+  for (std::size_t v = 0; v < placement.count; ++v) {
+    const Vec3& shown = scene.mesh.positions[placement.base + v];
+    const Vec3& to = positions[placement.base + v];
+    if (to == shown) {
+      append(values, before[v]);
+      continue;
     }
-    std::string& bytes = document_.changeable_buffer(place->buffer);
-    for (const auto& [element, value] : values) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        auto stored = std::bit_cast<std::array<char, 4>>(value[i]);
-        if (std::endian::native == std::endian::big) {
-          std::reverse(stored.begin(), stored.end());
-        }
-        std::copy(stored.begin(), stored.end(),
-                  bytes.begin() +
-                      static_cast<std::ptrdiff_t>(place->begin + element * place->stride + 4 * i));
+    const Eigen::Affine3d& transform = placement.transform_of(v);
+    const Vec3 shift = placement.shift_of(v);
+    const Vec3 local = taken_back(transform, before[v] + shift, shown, to) - shift;
+    append(values, local);
+    const Vec3 reached = transform * Vec3(local.cast<float>().cast<double>() + shift);
+    if (!((reached - to).lpNorm<Eigen::Infinity>() <= allowed)) {
+      first_beyond = beyond == 0 ? v : first_beyond;
+      ++beyond;
+    }
+  }
+  if (beyond > 0) {
+    return flattened(document.source(), placement, beyond, first_beyond);
+  }
+  return values == to_floats(*stored) ? std::optional<Floats>() : std::optional(std::move(values));
+}
+
+/// The stored normal of unit length that, with what the morph targets add, points along `along`.
+Vec3 without_shift(const Vec3& along, const Vec3& shift) {
+  const double part = along.dot(shift);
+  const double square = part * part + 1 - shift.squaredNorm();
+  return square > 0 && part + std::sqrt(square) > 0
+             ? Vec3(along * (part + std::sqrt(square)) - shift).stableNormalized()
+             : along;
+}
+
+struct Turned {
+  std::optional<Floats> normals;
+  std::optional<Floats> tangents;
+};
+
+/// Normals that have turned, and the tangents beside them.
+Result<Turned> turned_normals(GltfDocument& document, const GltfScene& scene,
+                              const NormalBlock& block, const FileNormals& file,
+                              std::span<const Vec3> normals, std::optional<std::size_t> tangent) {
+  const GltfPlacement& placement = scene.placements[block.placement];
+  std::vector<double> along;
+  if (tangent) {
+    Result<std::vector<double>> read = document.read_vectors(*tangent, 4);
+    if (!read) {
+      return read.error();
+    }
+    along = *std::move(read);
+  }
+  Floats values;
+  Floats tangents = to_floats(along);
+  bool any = false;
+  for (std::size_t v = 0; v < placement.count; ++v) {
+    const Vec3& after = normals[block.base + v];
+    Vec3 local = placement.transform_of(v).linear().transpose() * after;
+    local.stableNormalize();
+    const bool stays = (after - file.normals[block.base + v]).norm() < 1e-7 ||
+                       !(local.squaredNorm() > 0.5); // flattened away
+    if (stays) {
+      append(values, block.stored[v]);
+      continue;
+    }
+    any = true;
+    const Vec3 unit = block.shifts.empty() ? local : without_shift(local, block.shifts[v]);
+    append(values, unit);
+    if (4 * v + 3 < along.size()) {
+      const auto turn = Eigen::Quaterniond::FromTwoVectors(block.stored[v], unit);
+      const Vec3 turned = turn * Vec3(along[4 * v], along[4 * v + 1], along[4 * v + 2]);
+      if (turned.allFinite()) {
+        std::copy_n(turned.cast<float>().eval().data(), 3, &tangents[4 * v]);
       }
     }
-    buffers.insert(place->buffer);
-    accessors.insert(accessor);
+  }
+  Turned result;
+  if (any) {
+    result.normals = std::move(values);
+    if (tangents != to_floats(along)) {
+      result.tangents = std::move(tangents);
+    }
+  }
+  return result;
+}
+
+enum Attribute : std::size_t { position, normal, tangent };
+constexpr std::array<const char*, 3> attribute_names = {"POSITION", "NORMAL", "TANGENT"};
+constexpr std::array<std::size_t, 3> attribute_sizes = {3, 3, 4};
+
+/// What the attributes of a primitive are to hold under one node: numbers of values, or none where
+/// they stay.
+using Wants = std::array<std::optional<std::size_t>, 3>;
+
+/// A mesh of the file with other values, or a copy of it for the nodes that show another shape.
+struct MeshPlan {
+  std::size_t mesh = 0; ///< of the file
+  bool is_copy = false;
+  std::vector<std::size_t> nodes; ///< that show it
+  std::map<std::size_t, Wants> primitives;
+};
+
+/// What is to be stored, and by which meshes.
+class Plan {
+public:
+  explicit Plan(GltfDocument& document) : document_(document) {}
+
+  Status make(const GltfScene& scene, std::span<const Vec3> positions, const GltfNormals* stored,
+              std::span<const Vec3> normals) {
+    const Result<std::vector<Wants>> wants = wants_of(scene, positions, stored, normals);
+    if (!wants) {
+      return wants.error();
+    }
+    for (std::size_t first = 0; first < scene.shown.size();) {
+      std::size_t end = first;
+      while (end < scene.shown.size() && scene.shown[end].node == scene.shown[first].node) {
+        ++end;
+      }
+      const Status status = add_node(std::span(scene.shown).subspan(first, end - first),
+                                     std::span(*wants).subspan(first, end - first));
+      if (!status) {
+        return status;
+      }
+      first = end;
+    }
     return success();
   }
 
-  std::set<std::size_t> buffers;
-  std::set<std::size_t> accessors;
+  std::vector<MeshPlan> meshes;
+  std::vector<Floats> values;
 
 private:
+  Result<std::vector<Wants>> wants_of(const GltfScene& scene, std::span<const Vec3> positions,
+                                      const GltfNormals* stored, std::span<const Vec3> normals) {
+    const double size = largest_coordinate(positions);
+    std::vector<std::optional<std::size_t>> moved;
+    for (const GltfPlacement& placement : scene.placements) {
+      Result<std::optional<Floats>> floats =
+          moved_positions(document_, scene, placement, positions, size);
+      if (!floats) {
+        return floats.error();
+      }
+      moved.push_back(add_values(*std::move(floats)));
+    }
+    std::vector<Wants> wants(scene.shown.size());
+    using Key = std::tuple<std::size_t, std::size_t, std::optional<std::size_t>>;
+    std::map<Key, Wants> known;
+    for (std::size_t s = 0; s < scene.shown.size(); ++s) {
+      const GltfShown& shown = scene.shown[s];
+      wants[s][position] = moved[shown.placement];
+      if (stored == nullptr || !shown.normals) {
+        continue;
+      }
+      const auto [found, is_new] =
+          known.try_emplace({shown.placement, *shown.normals, shown.tangents});
+      if (is_new) {
+        const auto block = std::ranges::find_if(stored->blocks, [&](const NormalBlock& other) {
+          return other.placement == shown.placement && other.accessor == *shown.normals;
+        });
+        Result<Turned> turned =
+            turned_normals(document_, scene, *block, stored->file, normals, shown.tangents);
+        if (!turned) {
+          return turned.error();
+        }
+        found->second[normal] = add_values(std::move(turned->normals));
+        found->second[tangent] = add_values(std::move(turned->tangents));
+      }
+      wants[s][normal] = found->second[normal];
+      wants[s][tangent] = found->second[tangent];
+    }
+    return wants;
+  }
+
+  std::optional<std::size_t> add_values(std::optional<Floats> floats) {
+    if (!floats) {
+      return std::nullopt;
+    }
+    values.push_back(*std::move(floats));
+    return values.size() - 1;
+  }
+
+  // Nodes that show a mesh in the same shape go on sharing it.
+  Status add_node(std::span<const GltfShown> shown, std::span<const Wants> wants) {
+    bool is_copy = false;
+    for (MeshPlan& plan : meshes) {
+      if (plan.mesh != shown[0].mesh) {
+        continue;
+      }
+      is_copy = true;
+      const Result<bool> same = agrees(plan, shown, wants);
+      if (!same) {
+        return same.error();
+      }
+      if (*same) {
+        plan.nodes.push_back(shown[0].node);
+        return success();
+      }
+    }
+    MeshPlan plan{shown[0].mesh, is_copy, {shown[0].node}, {}};
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      plan.primitives[shown[i].primitive] = wants[i];
+    }
+    follow_along(plan);
+    meshes.push_back(std::move(plan));
+    return success();
+  }
+
+  // Lines and points over the vertices of triangles go where those go.
+  void follow_along(MeshPlan& plan) const {
+    const Json& primitives =
+        member(element(member(document_.json(), "meshes"), plan.mesh), "primitives");
+    const std::map<std::size_t, Wants> shown = plan.primitives;
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      if (shown.contains(p)) {
+        continue;
+      }
+      for (std::size_t a = 0; a < attribute_names.size(); ++a) {
+        const Json& own = member(member(primitives[p], "attributes"), attribute_names[a]);
+        const auto leader = std::ranges::find_if(shown, [&](const auto& other) {
+          return !own.is_null() && other.second[a] &&
+                 member(member(primitives[other.first], "attributes"), attribute_names[a]) == own;
+        });
+        if (leader != shown.end()) {
+          plan.primitives[p][a] = leader->second[a];
+        }
+      }
+    }
+  }
+
+  Result<bool> agrees(const MeshPlan& plan, std::span<const GltfShown> shown,
+                      std::span<const Wants> wants) {
+    const Json& meshes_of_file = member(document_.json(), "meshes");
+    const Json& primitives = member(meshes_of_file[plan.mesh], "primitives");
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const Wants& other = plan.primitives.at(shown[i].primitive);
+      for (std::size_t a = 0; a < attribute_names.size(); ++a) {
+        if (wants[i][a] == other[a]) {
+          continue;
+        }
+        const std::size_t accessor =
+            to_size(
+                member(member(primitives[shown[i].primitive], "attributes"), attribute_names[a]))
+                .value_or(0);
+        const Result<std::vector<double>> stored =
+            document_.read_vectors(accessor, attribute_sizes[a]);
+        if (!stored) {
+          return stored.error();
+        }
+        const Floats rest = to_floats(*stored);
+        if (!equal_but_for_rounding(wants[i][a] ? values[*wants[i][a]] : rest,
+                                    other[a] ? values[*other[a]] : rest, attribute_sizes[a])) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  static bool equal_but_for_rounding(const Floats& a, const Floats& b, std::size_t components) {
+    for (std::size_t i = 0; i < a.size(); i += components) {
+      const float size = std::max({std::abs(a[i]), std::abs(a[i + 1]), std::abs(a[i + 2]), 1e-30F});
+      for (std::size_t k = i; k < i + components; ++k) {
+        if (!(std::abs(a[k] - b[k]) <= 4e-6F * size)) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
   GltfDocument& document_;
 };
 
-/// New values for the elements of accessors, which several placements may share.
-using Changes = std::map<std::size_t, std::map<std::size_t, Float3>>;
-
-bool equal_but_for_rounding(const Float3& a, const Float3& b) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const float size = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2]), 1e-30F});
-    if (!(std::abs(a[i] - b[i]) <= 4e-6F * size)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-Error shared(const Source& source, const GltfScene& scene, std::size_t accessor) {
-  std::string nodes;
-  for (const GltfPlacement& placement : scene.placements) {
-    if (placement.positions == accessor) {
-      nodes.append(nodes.empty() ? "" : ", ").append(std::to_string(placement.node));
-    }
-  }
-  return source.error("the nodes " + nodes +
-                          " show the same mesh, which cannot have several shapes; give each node a "
-                          "mesh of its own (in Blender: Object, Relations, Make Single User), or "
-                          "write OBJ",
-                      ErrorCode::unsupported);
-}
-
-Result<Changes> moved_positions(GltfDocument& document, const GltfScene& scene,
-                                std::span<const Vec3> positions) {
-  Changes changes;
-  for (const GltfPlacement& placement : scene.placements) {
-    const Result<std::vector<double>> stored = document.read_vectors(placement.positions, 3);
-    if (!stored) {
-      return stored.error();
-    }
-    const Eigen::Affine3d& transform = placement.transform;
-    const bool can_invert = std::abs(transform.linear().determinant()) > 0;
-    const Eigen::Affine3d inverse = can_invert ? transform.inverse() : transform;
-    bool any = false;
-    std::vector<Float3> values;
-    for (std::size_t v = 0; v < placement.count; ++v) {
-      const Vec3& to = positions[placement.base + v];
-      const bool stays = to == scene.mesh.positions[placement.base + v];
-      any = any || !stays;
-      values.push_back(
-          stays ? to_floats({(*stored)[3 * v], (*stored)[3 * v + 1], (*stored)[3 * v + 2]})
-                : to_floats(inverse * to));
-    }
-    if (any && !(can_invert && inverse.matrix().allFinite())) {
-      return document.source().error("node " + std::to_string(placement.node) +
-                                         " flattens its mesh, which cannot be changed in place; "
-                                         "apply the scale first, or write OBJ",
-                                     ErrorCode::unsupported);
-    }
-    const auto known = changes.find(placement.positions);
-    if (known != changes.end()) {
-      for (std::size_t v = 0; v < placement.count; ++v) {
-        if (!equal_but_for_rounding(known->second[v], values[v])) {
-          return shared(document.source(), scene, placement.positions);
-        }
-      }
-      continue;
-    }
-    std::map<std::size_t, Float3>& own = changes[placement.positions];
-    for (std::size_t v = 0; v < placement.count; ++v) {
-      own.emplace_hint(own.end(), v, values[v]);
-    }
-  }
-  // What is as it was needs no place of its own: it may be compressed or shared.
-  for (auto change = changes.begin(); change != changes.end();) {
-    const Result<std::vector<double>> stored = document.read_vectors(change->first, 3);
-    if (!stored) {
-      return stored.error();
-    }
-    std::erase_if(change->second, [&](const auto& item) {
-      const auto& [v, value] = item;
-      return value == to_floats({(*stored)[3 * v], (*stored)[3 * v + 1], (*stored)[3 * v + 2]});
-    });
-    change = change->second.empty() ? changes.erase(change) : std::next(change);
-  }
-  return changes;
-}
-
-/// Normals that have turned, and the tangents beside them.
-Result<Changes> turned_normals(GltfDocument& document, const GltfScene& scene,
-                               const GltfNormals& stored, std::span<const Vec3> normals,
-                               Changes& tangents) {
-  Changes changes;
-  for (const NormalBlock& block : stored.blocks) {
-    const GltfPlacement& placement = scene.placements[block.placement];
-    const Result<std::vector<double>> values = document.read_vectors(block.accessor, 3);
-    if (!values) {
-      return values.error();
-    }
-    std::optional<std::size_t> tangent;
-    for (const GltfShown& shown : scene.shown) {
-      if (shown.placement == block.placement && shown.normals == block.accessor && shown.tangents) {
-        tangent = shown.tangents;
-      }
-    }
-    std::vector<double> along;
-    if (tangent) {
-      Result<std::vector<double>> read = document.read_vectors(*tangent, 4);
-      if (!read) {
-        return read.error();
-      }
-      along = *std::move(read);
-    }
-    for (std::size_t v = 0; v < placement.count; ++v) {
-      const Vec3& before = stored.file.normals[block.base + v];
-      const Vec3& after = normals[block.base + v];
-      if ((after - before).norm() < 1e-7) {
-        continue;
-      }
-      const Vec3 local = (placement.transform.linear().transpose() * after).stableNormalized();
-      changes[block.accessor][v] = to_floats(local);
-      if (4 * v + 3 < along.size()) {
-        const Vec3 from(Vec3((*values)[3 * v], (*values)[3 * v + 1], (*values)[3 * v + 2]));
-        const auto turn = Eigen::Quaterniond::FromTwoVectors(from, local);
-        const Vec3 turned = turn * Vec3(along[4 * v], along[4 * v + 1], along[4 * v + 2]);
-        if (turned.allFinite()) {
-          tangents[*tangent][v] = to_floats(turned);
-        }
-      }
-    }
-  }
-  return changes;
-}
-
-/// The list of three or four numbers with the least or the greatest of each component.
-std::string bounds_text(const std::vector<double>& values, bool greatest) {
+/// The list with the least or the greatest of each component.
+std::string bounds_text(const Floats& values, std::size_t components, bool greatest) {
   std::string text(1, '[');
-  for (std::size_t i = 0; i < 3; ++i) {
-    double bound = values[i];
-    for (std::size_t k = i; k < values.size(); k += 3) {
+  for (std::size_t i = 0; i < components; ++i) {
+    float bound = values[i];
+    for (std::size_t k = i; k < values.size(); k += components) {
       bound = greatest ? std::max(bound, values[k]) : std::min(bound, values[k]);
     }
     text.append(i > 0 ? 1 : 0, ',');
-    append_number(text, static_cast<float>(bound));
+    append_number(text, bound);
   }
   text.push_back(']');
   return text;
 }
 
-struct Replacement {
-  Span at;
-  std::string text;
-};
-
-/// The JSON with other bounds and URIs.
-class JsonPatch {
-public:
-  explicit JsonPatch(std::string_view text) : text_(text), finder_(text) {}
-
-  void replace(std::string_view list, std::size_t index, std::string_view name, std::string value) {
-    if (const std::optional<Span> at = finder_.find(list, index, name)) {
-      replacements_.push_back({*at, std::move(value)});
+void store(const Floats& values, char* to) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    auto stored = std::bit_cast<std::array<char, 4>>(values[i]);
+    if (std::endian::native == std::endian::big) {
+      std::reverse(stored.begin(), stored.end());
     }
-  }
-
-  [[nodiscard]] std::string take() && {
-    std::sort(replacements_.begin(), replacements_.end(),
-              [](const Replacement& a, const Replacement& b) { return a.at.begin < b.at.begin; });
-    std::string result;
-    std::size_t copied = 0;
-    for (const Replacement& replacement : replacements_) {
-      result.append(text_.substr(copied, replacement.at.begin - copied));
-      result.append(replacement.text);
-      copied = replacement.at.end;
-    }
-    return result.append(text_.substr(copied));
-  }
-
-private:
-  std::string_view text_;
-  JsonText finder_;
-  std::vector<Replacement> replacements_;
-};
-
-void store_size(std::string& bytes, std::size_t at, std::size_t size) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    bytes[at + i] = static_cast<char>((size >> (8 * i)) & 0xffU);
+    std::copy(stored.begin(), stored.end(), to + 4 * i);
   }
 }
 
-/// The file with another JSON and, in GLB, another binary chunk of the same size.
+/// Carries a plan out: in buffers and in the JSON.
+class Editor {
+public:
+  Editor(GltfDocument& document, const Plan& plan)
+      : document_(document), plan_(plan), json_(document.json_text()),
+        accessors_(size_of("accessors")), views_(size_of("bufferViews")),
+        meshes_(size_of("meshes")) {}
+
+  Status carry_out() {
+    find_users();
+    for (const auto& [accessor, users] : users_) {
+      if (users.wanted.empty()) {
+        continue;
+      }
+      const bool all_alike = users.wanted.size() == 1 && !users.as_stored;
+      for (const auto& [value, components] : users.wanted) {
+        const Status status = all_alike ? change(accessor, value, components)
+                                        : add_accessor(accessor, value, components);
+        if (!status) {
+          return status;
+        }
+      }
+    }
+    for (const MeshPlan& mesh : plan_.meshes) {
+      patch_mesh(mesh);
+    }
+    return success();
+  }
+
+  JsonPatch& json() { return json_; }
+
+  /// The whole JSON, at the end.
+  std::string take_json() {
+    if (is_longer_) {
+      json_.replace("buffers", 0, "byteLength",
+                    std::to_string(document_.changeable_buffer(0).size()));
+    }
+    return std::move(json_).take();
+  }
+
+  /// Buffers that are not as they were; the last may be new.
+  std::set<std::size_t> changed;
+  std::optional<std::size_t> added_buffer;
+
+private:
+  struct Users {
+    std::map<std::size_t, std::size_t> wanted; // numbers of values, and their components
+    bool as_stored = false;                    // somebody needs it as it is
+  };
+
+  [[nodiscard]] std::size_t size_of(const char* list) const {
+    const Json& array = member(document_.json(), list);
+    return array.is_array() ? array.size() : 0;
+  }
+
+  void needs_as_stored(const Json& accessor) {
+    if (const std::optional<std::size_t> index = to_size(accessor)) {
+      users_[*index].as_stored = true;
+    }
+  }
+
+  void find_users() {
+    const Json& json = document_.json();
+    std::vector<const MeshPlan*> own(meshes_);
+    for (const MeshPlan& plan : plan_.meshes) {
+      if (!plan.is_copy) {
+        own[plan.mesh] = &plan;
+      } else {
+        find_users_in(plan.mesh, &plan);
+      }
+    }
+    for (std::size_t m = 0; m < meshes_; ++m) {
+      find_users_in(m, own[m]);
+    }
+    for (const Json& skin : list_of(json, "skins")) {
+      needs_as_stored(member(skin, "inverseBindMatrices"));
+    }
+    for (const Json& animation : list_of(json, "animations")) {
+      for (const Json& sampler : list_of(animation, "samplers")) {
+        needs_as_stored(member(sampler, "input"));
+        needs_as_stored(member(sampler, "output"));
+      }
+    }
+    for (const Json& node : list_of(json, "nodes")) {
+      for (const Json& instances :
+           list_of(member(member(node, "extensions"), "EXT_mesh_gpu_instancing"), "attributes")) {
+        needs_as_stored(instances);
+      }
+    }
+  }
+
+  static const Json& list_of(const Json& object, const char* name) { return member(object, name); }
+
+  void find_users_in(std::size_t mesh, const MeshPlan* plan) {
+    const Json& primitives =
+        member(element(member(document_.json(), "meshes"), mesh), "primitives");
+    for (std::size_t p = 0; primitives.is_array() && p < primitives.size(); ++p) {
+      Wants wants;
+      if (plan != nullptr && plan->primitives.contains(p)) {
+        wants = plan->primitives.at(p);
+      }
+      const Json& attributes = member(primitives[p], "attributes");
+      for (const auto& [name, accessor] : attributes.items()) {
+        std::size_t a = 0;
+        while (a < attribute_names.size() && name != attribute_names[a]) {
+          ++a;
+        }
+        const std::optional<std::size_t> index = to_size(accessor);
+        if (index && a < attribute_names.size() && wants[a]) {
+          users_[*index].wanted[*wants[a]] = attribute_sizes[a];
+        } else {
+          needs_as_stored(accessor);
+        }
+      }
+      needs_as_stored(member(primitives[p], "indices"));
+      for (const Json& target : list_of(primitives[p], "targets")) {
+        for (const Json& accessor : target) {
+          needs_as_stored(accessor);
+        }
+      }
+    }
+  }
+
+  /// Gives an accessor other values: where they are, or else in a place of their own.
+  Status change(std::size_t accessor, std::size_t value, std::size_t components) {
+    const Floats& floats = plan_.values[value];
+    const Result<std::optional<GltfDocument::Place>> place =
+        document_.place_of(accessor, components);
+    if (!place) {
+      return place.error();
+    }
+    if (!*place) {
+      json_.replace("accessors", accessor, description(accessor, value, components).dump());
+      return space_;
+    }
+    std::string& bytes = document_.changeable_buffer((*place)->buffer);
+    for (std::size_t i = 0; i < (*place)->count; ++i) {
+      store(Floats(floats.begin() + static_cast<std::ptrdiff_t>(i * components),
+                   floats.begin() + static_cast<std::ptrdiff_t>((i + 1) * components)),
+            &bytes[(*place)->begin + i * (*place)->stride]);
+    }
+    changed.insert((*place)->buffer);
+    if (components == 3) { // the bounds of tangents are not asked for, and seldom given
+      json_.replace("accessors", accessor, "min", bounds_text(floats, components, false));
+      json_.replace("accessors", accessor, "max", bounds_text(floats, components, true));
+    }
+    return success();
+  }
+
+  Status add_accessor(std::size_t original, std::size_t value, std::size_t components) {
+    json_.append("accessors", description(original, value, components).dump());
+    replaced_[{original, value}] = accessors_++;
+    return space_;
+  }
+
+  /// An accessor for values in a new place; the rest, such as the name, as in the original.
+  Json description(std::size_t original, std::size_t value, std::size_t components) {
+    const Floats& floats = plan_.values[value];
+    Json accessor = member(document_.json(), "accessors")[original];
+    for (const char* name : {"byteOffset", "sparse", "normalized"}) {
+      accessor.erase(name);
+    }
+    accessor["bufferView"] = add_view(floats);
+    accessor["componentType"] = 5126; // float
+    if (components == 3) {
+      accessor["min"] = Json::parse(bounds_text(floats, components, false));
+      accessor["max"] = Json::parse(bounds_text(floats, components, true));
+    } else {
+      accessor.erase("min");
+      accessor.erase("max");
+    }
+    return accessor;
+  }
+
+  std::size_t add_view(const Floats& floats) {
+    const bool has_chunk =
+        size_of("buffers") > 0 && document_.is_binary_chunk(0) && !document_.binary_chunk().empty();
+    const std::size_t buffer = has_chunk ? 0 : size_of("buffers");
+    if (!has_chunk && !added_buffer) {
+      added_buffer = buffer;
+      document_.reserve_buffers(buffer + 1);
+    }
+    std::string& bytes = document_.changeable_buffer(buffer);
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    const std::size_t begin = bytes.size();
+    bytes.resize(begin + 4 * floats.size());
+    store(floats, &bytes[begin]);
+    changed.insert(buffer);
+    is_longer_ = has_chunk;
+    if (bytes.size() > std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 28U)) {
+      space_ = document_.source().error("would become larger than GLB files can be; write OBJ",
+                                        ErrorCode::too_large);
+    }
+    json_.append("bufferViews", Json{{"buffer", buffer},
+                                     {"byteOffset", begin},
+                                     {"byteLength", 4 * floats.size()},
+                                     {"target", 34962}} // vertices
+                                    .dump());
+    return views_++;
+  }
+
+  void patch_mesh(const MeshPlan& plan) {
+    Json mesh = member(document_.json(), "meshes")[plan.mesh];
+    for (const auto& [p, wants] : plan.primitives) {
+      Json& primitive = mesh["primitives"][p];
+      bool differs = false;
+      for (std::size_t a = 0; a < attribute_names.size(); ++a) {
+        if (!wants[a]) {
+          continue;
+        }
+        Json& accessor = primitive["attributes"][attribute_names[a]];
+        const auto found = replaced_.find({to_size(accessor).value_or(0), *wants[a]});
+        if (found != replaced_.end()) {
+          accessor = found->second;
+          differs = true;
+        }
+        differs = drop_compressed_copy(primitive) || differs;
+      }
+      if (differs && !plan.is_copy) {
+        json_.replace_element("meshes", plan.mesh, "primitives", p, primitive.dump());
+      }
+    }
+    if (plan.is_copy) {
+      json_.append("meshes", mesh.dump());
+      for (const std::size_t node : plan.nodes) {
+        json_.replace("nodes", node, "mesh", std::to_string(meshes_));
+      }
+      ++meshes_;
+    }
+  }
+
+  // The same vertices once more, as they were.
+  static bool drop_compressed_copy(Json& primitive) {
+    constexpr const char* draco = "KHR_draco_mesh_compression";
+    if (member(member(primitive, "extensions"), draco).is_null()) {
+      return false;
+    }
+    primitive["extensions"].erase(draco);
+    if (primitive["extensions"].empty()) {
+      primitive.erase("extensions");
+    }
+    return true;
+  }
+
+  GltfDocument& document_;
+  const Plan& plan_;
+  JsonPatch json_;
+  std::map<std::size_t, Users> users_;                                  // by accessor
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> replaced_; // (accessor, values)
+  std::size_t accessors_;
+  std::size_t views_;
+  std::size_t meshes_;
+  bool is_longer_ = false;   // the binary chunk
+  Status space_ = success(); // unless the file becomes too long
+};
+
+void append_size(std::string& bytes, std::size_t size) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    bytes.push_back(static_cast<char>((size >> (8 * i)) & 0xffU));
+  }
+}
+
+void append_chunk(std::string& bytes, std::string_view type, std::string_view content,
+                  char padding) {
+  const std::size_t size = (content.size() + 3) / 4 * 4;
+  append_size(bytes, size);
+  bytes.append(type).append(content).append(size - content.size(), padding);
+}
+
+/// The file with another JSON and, in GLB, another binary chunk.
 std::string assemble(const GltfDocument& document, std::string json,
                      std::optional<std::string_view> binary) {
   const std::string_view bytes = document.source().bytes;
-  const std::string_view old = document.json_text();
-  const auto offset = [&](std::string_view part) {
-    return static_cast<std::size_t>(part.data() - bytes.data());
-  };
-  const bool is_glb = bytes.starts_with("glTF");
-  if (is_glb && json.size() != old.size()) { // a chunk is padded with blanks
+  if (!bytes.starts_with("glTF")) {
+    const auto begin = static_cast<std::size_t>(document.json_text().data() - bytes.data());
+    return std::string(bytes.substr(0, begin)) + json;
+  }
+  if (json == document.json_text() && (!binary || *binary == document.binary_chunk())) {
+    return std::string(bytes);
+  }
+  if (json.size() != document.json_text().size()) { // without the blanks that padded it
     json.erase(json.find_last_not_of(" \t\r\n") + 1);
-    json.append((4 - json.size() % 4) % 4, ' ');
   }
-  std::string result(bytes.substr(0, offset(old)));
-  result += json;
-  result += bytes.substr(offset(old) + old.size());
-  const auto shift =
-      static_cast<std::ptrdiff_t>(json.size()) - static_cast<std::ptrdiff_t>(old.size());
-  if (is_glb) {
-    store_size(result, offset(old) - 8, json.size());
-    store_size(result, 8,
-               static_cast<std::size_t>(
-                   static_cast<std::ptrdiff_t>(load<std::uint32_t>(&bytes[8])) + shift));
+  std::string result("glTF");
+  append_size(result, 2);
+  append_size(result, 0);
+  for (const GltfDocument::Chunk& chunk : document.chunks()) {
+    if (chunk.content.data() + chunk.content.size() ==
+        document.json_text().data() + document.json_text().size()) {
+      append_chunk(result, chunk.type, json, ' ');
+    } else if (binary && chunk.content.data() == document.binary_chunk().data()) {
+      append_chunk(result, chunk.type, *binary, '\0');
+    } else {
+      append_chunk(result, chunk.type, chunk.content, '\0');
+    }
   }
-  if (binary) {
-    const std::string_view chunk = document.binary_chunk();
-    auto at = static_cast<std::ptrdiff_t>(offset(chunk));
-    at += offset(chunk) > offset(old) ? shift : 0;
-    std::copy(binary->begin(), binary->end(), result.begin() + at);
-  }
-  return result;
+  std::string length;
+  append_size(length, result.size());
+  return result.replace(8, 4, length);
 }
 
 /// A name beside `out` for a buffer, which no file that the original refers to has.
@@ -461,34 +815,43 @@ bool same_folder(const std::filesystem::path& a, const std::filesystem::path& b)
   return std::filesystem::equivalent(named(a), named(b), ignored);
 }
 
-/// Reads the changed buffers again: accessors that overlap others in other ways than glTF files do
+/// Reads the changed file again: accessors that overlap others in other ways than glTF files do
 /// would have spoiled each other.
-Status check_result(GltfDocument& document, std::span<const Vec3> positions) {
-  const Result<GltfScene> scene = read_gltf_scene(document);
+Status check_result(GltfDocument& document, const GltfScene& before,
+                    std::span<const Vec3> positions, Pose pose) {
+  const Result<GltfScene> scene = read_gltf_scene(document, pose);
   if (!scene) {
     return scene.error();
   }
-  double size = 0;
-  for (const Vec3& p : positions) {
-    size = std::max(size, p.lpNorm<Eigen::Infinity>());
+  const double size = largest_coordinate(positions);
+  const auto spoiled = [&](std::size_t accessor) {
+    return document.source().error("accessor " + std::to_string(accessor) +
+                                       " overlaps another or is too coarse, and cannot be "
+                                       "changed in place; export the model again, or write OBJ",
+                                   ErrorCode::unsupported);
+  };
+  if (!std::ranges::equal(scene->mesh.corners(), before.mesh.corners()) ||
+      scene->mesh.positions.size() != positions.size()) {
+    return spoiled(before.placements[0].positions);
   }
   for (const GltfPlacement& placement : scene->placements) {
-    const double around = placement.transform.translation().lpNorm<Eigen::Infinity>();
+    const double allowed = tolerance(placement, size);
     for (std::size_t v = placement.base; v < placement.base + placement.count; ++v) {
       const double error = (scene->mesh.positions[v] - positions[v]).lpNorm<Eigen::Infinity>();
-      if (!(error <= 1e-5 * std::max(size, around))) {
-        return document.source().error("accessor " + std::to_string(placement.positions) +
-                                           " overlaps another or is too coarse, and cannot be "
-                                           "changed in place; export the model again, or write OBJ",
-                                       ErrorCode::unsupported);
+      if (!(error <= allowed)) {
+        return spoiled(placement.positions);
       }
     }
   }
   return success();
 }
 
-Status write_all(GltfDocument& document, JsonPatch json, const std::set<std::size_t>& changed,
-                 const std::filesystem::path& out) {
+/// Files beside the one that is written, by their buffers.
+using BufferFiles = std::map<std::size_t, std::filesystem::path>;
+
+/// Gives the buffers that have changed, or that move to another folder, other URIs.
+Result<BufferFiles> place_buffers(GltfDocument& document, Editor& editor,
+                                  const std::filesystem::path& out) {
   const Json& buffers = member(document.json(), "buffers");
   const bool moves_away = !same_folder(document.folder()->native(), out.parent_path());
   std::vector<std::filesystem::path> taken;
@@ -497,47 +860,59 @@ Status write_all(GltfDocument& document, JsonPatch json, const std::set<std::siz
       taken.push_back(*file);
     }
   }
-  std::optional<std::string_view> binary;
-  std::vector<std::pair<std::filesystem::path, std::string_view>> files;
+  const bool uses_files = !taken.empty();
+  BufferFiles files;
+  const auto uri_of_new_file = [&](std::size_t buffer) {
+    files[buffer] = free_name(out, taken);
+    taken.push_back(files[buffer]);
+    return Json(encode_percent(files[buffer].filename().string()));
+  };
   for (std::size_t b = 0; b < buffers.size(); ++b) {
     const bool is_file = document.file_of_buffer(b).has_value();
-    if (changed.count(b) == 0 && !(is_file && moves_away)) {
+    if ((!editor.changed.contains(b) && !(is_file && moves_away)) || document.is_binary_chunk(b)) {
       continue;
     }
     const Result<std::string_view> bytes = document.bytes_of_buffer(b);
     if (!bytes) {
       return bytes.error();
     }
-    if (document.is_binary_chunk(b)) {
-      binary = *bytes;
-    } else if (is_file) {
-      const std::filesystem::path name = free_name(out, taken);
-      taken.push_back(name);
-      files.emplace_back(name, *bytes);
-      json.replace("buffers", b, "uri", Json(encode_percent(name.filename().string())).dump());
-    } else {
-      const std::string uri = to_text(member(buffers[b], "uri"));
-      json.replace("buffers", b, "uri",
-                   Json(uri.substr(0, uri.find(',') + 1) + encode_base64(*bytes)).dump());
-    }
+    const Json uri = is_file ? uri_of_new_file(b) : Json(data_uri(*bytes));
+    editor.json().replace("buffers", b, "uri", uri.dump());
   }
-  for (const auto& [name, bytes] : files) { // first: a file that names them finds them
-    if (Status status = write_file_atomically(name, bytes); !status) {
+  if (editor.added_buffer) {
+    const std::string_view bytes = document.changeable_buffer(*editor.added_buffer);
+    const Json uri = uses_files ? uri_of_new_file(*editor.added_buffer) : Json(data_uri(bytes));
+    editor.json().append("buffers", Json{{"uri", uri}, {"byteLength", bytes.size()}}.dump());
+  }
+  return files;
+}
+
+Status write_all(GltfDocument& document, std::string json, const BufferFiles& files,
+                 const std::filesystem::path& out) {
+  for (const auto& [buffer, name] : files) { // first: a file that names them finds them
+    const Result<std::string_view> bytes = document.bytes_of_buffer(buffer);
+    const Status status = bytes ? write_file_atomically(name, *bytes) : bytes.error();
+    if (!status) {
       return status;
     }
   }
-  return write_file_atomically(out, assemble(document, std::move(json).take(), binary));
+  std::optional<std::string_view> binary;
+  if (!document.binary_chunk().empty() && document.is_binary_chunk(0)) {
+    binary = document.whole_buffer(0);
+  }
+  return write_file_atomically(out, assemble(document, std::move(json), binary));
 }
 
 } // namespace
 
 Result<FileNormals> read_gltf_normals(const Source& source,
-                                      const std::optional<std::filesystem::path>& folder) {
+                                      const std::optional<std::filesystem::path>& folder,
+                                      Pose pose) {
   Result<GltfDocument> document = GltfDocument::open(source, folder);
   if (!document) {
     return document.error();
   }
-  const Result<GltfScene> scene = read_gltf_scene(*document);
+  const Result<GltfScene> scene = read_gltf_scene(*document, pose);
   if (!scene) {
     return scene.error();
   }
@@ -545,7 +920,7 @@ Result<FileNormals> read_gltf_normals(const Source& source,
   return normals ? Result<FileNormals>(std::move(normals->file)) : normals.error();
 }
 
-Status rewrite_gltf(const Source& source, const std::filesystem::path& folder,
+Status rewrite_gltf(const Source& source, const std::filesystem::path& folder, Pose pose,
                     std::span<const Vec3> positions, std::span<const Vec3> normals,
                     const std::filesystem::path& out) {
   const bool is_glb = source.bytes.starts_with("glTF");
@@ -559,7 +934,7 @@ Status rewrite_gltf(const Source& source, const std::filesystem::path& folder,
   if (!document) {
     return document.error();
   }
-  const Result<GltfScene> scene = read_gltf_scene(*document);
+  const Result<GltfScene> scene = read_gltf_scene(*document, pose);
   if (!scene) {
     return scene.error();
   }
@@ -571,51 +946,38 @@ Status rewrite_gltf(const Source& source, const std::filesystem::path& folder,
   if (scene->mesh.positions.size() != positions.size()) {
     return mismatch("vertex", scene->mesh.positions.size(), positions.size());
   }
-  const Result<Changes> moved = moved_positions(*document, *scene, positions);
-  if (!moved) {
-    return moved.error();
-  }
-  Changes tangents;
-  Changes turned;
+  GltfNormals stored;
   if (!normals.empty()) {
-    const Result<GltfNormals> stored = normals_of(*document, *scene);
-    if (!stored) {
-      return stored.error();
+    Result<GltfNormals> read = normals_of(*document, *scene);
+    if (!read) {
+      return read.error();
     }
-    if (stored->file.normals.size() != normals.size()) {
-      return mismatch("normal", stored->file.normals.size(), normals.size());
-    }
-    Result<Changes> changes = turned_normals(*document, *scene, *stored, normals, tangents);
-    if (!changes) {
-      return changes.error();
-    }
-    turned = *std::move(changes);
-  }
-  Patcher patcher(*document);
-  for (const auto& [changes, components] :
-       {std::pair<const Changes*, std::size_t>{&*moved, 3}, {&turned, 3}, {&tangents, 4}}) {
-    for (const auto& [accessor, values] : *changes) {
-      if (Status status = patcher.set(accessor, components, values); !status) {
-        return status;
-      }
+    stored = *std::move(read);
+    if (stored.file.normals.size() != normals.size()) {
+      return mismatch("normal", stored.file.normals.size(), normals.size());
     }
   }
-  if (Status status = check_result(*document, positions); !status) {
+  Plan plan(*document);
+  if (Status status = plan.make(*scene, positions, normals.empty() ? nullptr : &stored, normals);
+      !status) {
     return status;
   }
-  JsonPatch json(document->json_text());
-  for (const std::size_t accessor : patcher.accessors) {
-    if (tangents.count(accessor) != 0) {
-      continue; // their bounds are not asked for, and seldom given
-    }
-    const Result<std::vector<double>> values = document->read_vectors(accessor, 3);
-    if (!values) {
-      return values.error();
-    }
-    json.replace("accessors", accessor, "min", bounds_text(*values, false));
-    json.replace("accessors", accessor, "max", bounds_text(*values, true));
+  Editor editor(*document, plan);
+  if (Status status = editor.carry_out(); !status) {
+    return status;
   }
-  return write_all(*document, std::move(json), patcher.buffers, out);
+  const Result<BufferFiles> files = place_buffers(*document, editor, out);
+  if (!files) {
+    return files.error();
+  }
+  const std::string json = editor.take_json();
+  if (Status status = document->replace_json(json); !status) {
+    return status;
+  }
+  if (Status status = check_result(*document, *scene, positions, pose); !status) {
+    return status;
+  }
+  return write_all(*document, json, *files, out);
 }
 
 } // namespace cagewright

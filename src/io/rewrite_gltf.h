@@ -4,6 +4,7 @@
 
 #include "io/source.h"
 #include <cagewright/core/result.h>
+#include <cagewright/io/pose.h>
 #include <cagewright/io/rewrite_positions.h>
 
 #include <filesystem>
@@ -14,10 +15,11 @@ namespace cagewright {
 
 /// The normals of all vertices as the scene shows them, of unit length.
 Result<FileNormals> read_gltf_normals(const Source& source,
-                                      const std::optional<std::filesystem::path>& folder);
+                                      const std::optional<std::filesystem::path>& folder,
+                                      Pose pose);
 
 /// See rewrite_positions().
-Status rewrite_gltf(const Source& source, const std::filesystem::path& folder,
+Status rewrite_gltf(const Source& source, const std::filesystem::path& folder, Pose pose,
                     std::span<const Vec3> positions, std::span<const Vec3> normals,
                     const std::filesystem::path& out);
 

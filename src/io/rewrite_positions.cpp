@@ -402,9 +402,9 @@ Result<FileNormals> obj_normals_in(const Source& source) {
 } // namespace
 
 Result<FileNormals> normals_in(const Source& source, MeshFormat format,
-                               const std::optional<std::filesystem::path>& folder) {
+                               const std::optional<std::filesystem::path>& folder, Pose pose) {
   if (format == MeshFormat::gltf) {
-    return read_gltf_normals(source, folder);
+    return read_gltf_normals(source, folder, pose);
   }
   Result<FileNormals> result =
       format == MeshFormat::obj ? obj_normals_in(source) : vertex_normals_in(source, format);
@@ -416,7 +416,7 @@ Result<FileNormals> normals_in(const Source& source, MeshFormat format,
 }
 
 Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& mesh,
-                  const std::filesystem::path& folder, std::span<const Vec3> positions,
+                  const std::filesystem::path& folder, Pose pose, std::span<const Vec3> positions,
                   std::span<const Vec3> normals, const std::filesystem::path& out) {
   if (!all_finite(positions) || !all_finite(normals)) {
     return Error{ErrorCode::cannot_write, one_line(out.string()) +
@@ -424,7 +424,7 @@ Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& me
                                               "it was computed"};
   }
   if (format == MeshFormat::gltf) {
-    return rewrite_gltf(source, folder, positions, normals, out);
+    return rewrite_gltf(source, folder, pose, positions, normals, out);
   }
   const Status vertices = check_count(source, "vertex", mesh.positions.size(), positions.size());
   if (!vertices) {
@@ -432,7 +432,7 @@ Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& me
   }
   FileNormals stored;
   if (!normals.empty()) {
-    Result<FileNormals> found = normals_in(source, format, folder);
+    Result<FileNormals> found = normals_in(source, format, folder, pose);
     if (!found) {
       return found.error();
     }
@@ -446,22 +446,23 @@ Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& me
   return bytes ? write_file_atomically(out, *bytes) : bytes.error();
 }
 
-Result<FileNormals> read_normals(const std::filesystem::path& path) {
-  const Result<ModelFile> file = ModelFile::open(path);
+Result<FileNormals> read_normals(const std::filesystem::path& path, Pose pose) {
+  const Result<ModelFile> file = ModelFile::open(path, pose);
   return file ? file->normals() : file.error();
 }
 
 Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
-                         std::span<const Vec3> normals, const std::filesystem::path& out) {
-  const Result<ModelFile> file = ModelFile::open(original);
+                         std::span<const Vec3> normals, const std::filesystem::path& out,
+                         Pose pose) {
+  const Result<ModelFile> file = ModelFile::open(original, pose);
   return file ? file->rewrite(positions, normals, out) : file.error();
 }
 
 Status write_moved(const std::filesystem::path& original, const PolygonMesh& mesh,
                    std::span<const Vec3> positions, std::span<const Vec3> normals,
-                   const std::filesystem::path& out) {
+                   const std::filesystem::path& out, Pose pose) {
   if (!original.empty() && format_of_name(original) == format_of_name(out)) {
-    return rewrite_positions(original, positions, normals, out);
+    return rewrite_positions(original, positions, normals, out, pose);
   }
   PolygonMesh moved = mesh;
   moved.positions.assign(positions.begin(), positions.end());

@@ -15,6 +15,14 @@ int hex_digit(char c) {
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  }
+  return result;
+}
+
 } // namespace
 
 std::optional<std::string> decode_base64(std::string_view text) {
@@ -22,10 +30,14 @@ std::optional<std::string> decode_base64(std::string_view text) {
   bytes.reserve(text.size() / 4 * 3);
   std::uint32_t bits = 0;
   int count = 0;
-  while (text.ends_with('=')) {
+  constexpr std::string_view blank = " \t\r\n"; // lines of mail and of pretty printers
+  while (!text.empty() && (text.back() == '=' || blank.find(text.back()) != blank.npos)) {
     text.remove_suffix(1);
   }
   for (const char c : text) {
+    if (blank.find(c) != blank.npos) {
+      continue;
+    }
     std::uint32_t value = 0;
     if (c >= 'A' && c <= 'Z') {
       value = static_cast<std::uint32_t>(c - 'A');
@@ -62,6 +74,30 @@ std::string decode_percent(std::string_view uri) {
     }
   }
   return name;
+}
+
+bool is_data_uri(std::string_view uri) {
+  return lower(uri.substr(0, 5)) == "data:";
+}
+
+std::optional<std::string> decode_data_uri(std::string_view uri) {
+  const std::size_t comma = uri.find(',');
+  if (comma == uri.npos) {
+    return std::nullopt;
+  }
+  const std::string_view head = uri.substr(0, comma);
+  std::string data(uri.substr(comma + 1));
+  if (data.find('%') != data.npos) {
+    data = decode_percent(data);
+  }
+  constexpr std::string_view mark = ";base64";
+  const bool is_base64 =
+      head.size() >= mark.size() && lower(head.substr(head.size() - mark.size())) == mark;
+  return is_base64 ? decode_base64(data) : std::optional(std::move(data));
+}
+
+std::string data_uri(std::string_view bytes) {
+  return "data:application/octet-stream;base64," + encode_base64(bytes);
 }
 
 std::string encode_base64(std::string_view bytes) {

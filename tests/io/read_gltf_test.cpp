@@ -1,3 +1,4 @@
+#include <cagewright/io/model_file.h>
 #include <cagewright/io/read_mesh.h>
 
 #include "io/files.h"
@@ -84,11 +85,6 @@ TEST(ReadGltf, ShowsAllRootsWhereThereIsNoScene) {
   EXPECT_EQ(read_glb({.scenes = "[]", .nodes = R"([{"children":[1]},{"mesh":0},{"mesh":0}])"})
                 .positions.size(),
             6U);
-}
-
-TEST(ReadGltf, TreatsRiggedMeshesLikeOthers) {
-  EXPECT_EQ(read_glb({.nodes = R"([{"mesh":0,"skin":0,"translation":[0,0,1]}])"}).positions[0],
-            Vec3(0, 0, 1));
 }
 
 Parts with_indices(const std::string& type, const std::string& indices, int count, int mode = 4) {
@@ -205,6 +201,84 @@ TEST(ReadGltf, LooksForBuffersBesideTheFile) {
   EXPECT_EQ(read_mesh(folder / "model.gltf").error().code, ErrorCode::cannot_open);
 }
 
+TEST(ReadGltf, FindsBuffersByNamesThatAreNoUris) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "sub");
+  const std::string bytes = Parts().bytes.substr(0, 36);
+  folder.add("100%25.bin", bytes); // stands so in the URI, unescaped
+  folder.add("sub/a b.bin", bytes);
+  for (const std::string uri : {"100%25.bin", R"(sub\\a b.bin)", "./sub/a%20b.bin"}) {
+    const Parts parts{.buffers = R"([{"byteLength":36,"uri":")" + uri + "\"}]"};
+    const Result<PolygonMesh> mesh = read_mesh(folder.add("model.gltf", parts.json()));
+    EXPECT_TRUE(mesh) << uri << ": " << mesh.error().message;
+  }
+}
+
+TEST(ReadGltf, ReadsDataUrisOfAllKinds) {
+  const auto with_uri = [](const std::string& uri) {
+    return Parts{.buffers = R"([{"byteLength":36,"uri":")" + uri + "\"}]"}.json();
+  };
+  const std::string one = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"; // 36 bytes
+  std::string escaped;
+  for (const char c : Parts().bytes.substr(0, 36)) {
+    constexpr const char* digits = "0123456789ABCDEF";
+    escaped += {'%', digits[static_cast<unsigned char>(c) >> 4U],
+                digits[static_cast<unsigned char>(c) & 15U]};
+  }
+  for (const std::string& uri :
+       {"data:;base64," + one, "DATA:application/octet-stream;BASE64," + one,
+        "data:application/gltf-buffer;base64," + one + "====",
+        "data:;base64," + one.substr(0, 20) + "\\r\\n " + one.substr(20),
+        "data:;base64," + one.substr(0, 20) + "%50" + one.substr(21), // 'P' as an escape
+        "data:application/octet-stream," + escaped}) {
+    const Result<PolygonMesh> mesh = test::read(with_uri(uri), MeshFormat::gltf);
+    ASSERT_TRUE(mesh) << uri << ": " << mesh.error().message;
+    EXPECT_EQ(mesh->positions[1], Vec3(1, 0, 0)) << uri;
+  }
+  EXPECT_EQ(test::message_of(with_uri("data:nothing"), MeshFormat::gltf),
+            "file: buffer 0 is not valid base64; export the model again");
+}
+
+TEST(ReadGltf, ReadsContainersThatAreNotPadded) {
+  const auto chunk = [](const std::string& type, const std::string& content, std::size_t padding) {
+    return binary(static_cast<std::uint32_t>(content.size())) + type + content +
+           std::string(padding, '\0');
+  };
+  std::string json = Parts().json();
+  json.resize(json.size() + (5 - json.size() % 4) % 4, ' '); // one more than a multiple of four
+  for (const std::string& mark : {std::string(), std::string("\xef\xbb\xbf")}) {
+    for (const std::size_t padding : {0U, 3U}) { // three uncounted bytes
+      const std::string text = mark.empty() ? json : mark + json + ' ';
+      const std::string chunks = chunk("JSON", text, mark.empty() ? padding : 0) +
+                                 chunk(std::string("BIN\0", 4), Parts().bytes, 0);
+      const std::string glb =
+          "glTF" + binary(2, static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
+      EXPECT_EQ(test::message_of(glb, MeshFormat::gltf), "read") << mark.size() << ' ' << padding;
+    }
+  }
+}
+
+TEST(ReadGltf, NeedsOnlyTheBytesThatAreUsed) {
+  Parts parts{.buffers = R"([{"byteLength":100}])"}; // of which there are 56
+  EXPECT_EQ(message_of(parts), "read");
+}
+
+TEST(ReadGltf, SaysWhatOfTheFileIsLeftOut) {
+  Parts parts{.scenes = R"([{"name":"day","nodes":[0]},{"name":"night","nodes":[]}])",
+              .primitives = R"([{"attributes":{"POSITION":0}},{"mode":0,"attributes":)"
+                            R"({"POSITION":0}},{"mode":1,"attributes":{"POSITION":0}}])"};
+  const Result<ModelFile> file =
+      ModelFile::parse(test::make_glb(parts.json(), parts.bytes), MeshFormat::gltf, "file");
+  ASSERT_TRUE(file) << file.error().message;
+  ASSERT_EQ(file->notes().size(), 2U);
+  EXPECT_EQ(file->notes()[0].message,
+            "file: mesh 0, primitive 1: draws points or lines, which are left out (and 1 more)");
+  EXPECT_EQ(file->notes()[1].message, "file: the scene 'day' is read; left out are 'night'");
+  parts.more = R"(,"scene":1)";
+  EXPECT_EQ(message_of(parts),
+            "file: has no faces in its scene; make another the default one ('day')");
+}
+
 TEST(ReadGltf, DoesNotLookForBuffersElsewhere) {
   for (const std::string uri : {"https://example.org/a.bin", "/etc/passwd", "a.bin"}) {
     const Parts parts{.buffers = R"([{"byteLength":36,"uri":")" + uri + "\"}]"};
@@ -296,7 +370,9 @@ INSTANTIATE_TEST_SUITE_P(
          "buffer 1 does not exist; export the model again"},
         {{.views = "{}"},
          "accessor 0 refers to a buffer view that does not exist; export the model again"},
-        {{.buffers = R"([{"byteLength":100}])"},
+        {{.accessors = R"([{"bufferView":0,"componentType":5126,"count":5,"type":"VEC3"}])",
+          .views = R"([{"buffer":0,"byteLength":60}])",
+          .buffers = R"([{"byteLength":100}])"},
          "buffer 0 should have 100 bytes, but has 56; export the model again"},
         {{.buffers = R"([{"byteLength":36,"uri":"data:;base64,AA!A"}])"},
          "buffer 0 is not valid base64; export the model again"},

@@ -6,6 +6,7 @@
 #include <cagewright/core/result.h>
 #include <cagewright/io/mesh_attributes.h>
 #include <cagewright/io/mesh_format.h>
+#include <cagewright/io/pose.h>
 #include <cagewright/io/rewrite_positions.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
@@ -32,14 +33,16 @@ struct FileNote {
 class ModelFile {
 public:
   /// Reads the file. Errors: those of read_mesh().
-  static Result<ModelFile> open(const std::filesystem::path& path);
+  static Result<ModelFile> open(const std::filesystem::path& path, Pose pose = Pose::shown);
 
   /// The same for a file in memory; `name` stands for it in messages. A glTF file cannot refer to
   /// others here: unsupported.
-  static Result<ModelFile> parse(std::string bytes, MeshFormat format, std::string_view name);
+  static Result<ModelFile> parse(std::string bytes, MeshFormat format, std::string_view name,
+                                 Pose pose = Pose::shown);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] MeshFormat format() const { return format_; }
+  [[nodiscard]] Pose pose() const { return pose_; }
   [[nodiscard]] const PolygonMesh& mesh() const { return mesh_; }
   [[nodiscard]] PolygonMesh take_mesh() && { return std::move(mesh_); }
   [[nodiscard]] std::span<const FileNote> notes() const { return notes_; }
@@ -75,6 +78,7 @@ private:
   std::string name_;     // in messages
   bool on_disk_ = false; // and so may refer to files beside it
   MeshFormat format_ = MeshFormat::obj;
+  Pose pose_ = Pose::shown;
   std::shared_ptr<const FileBytes> bytes_; // text in UTF-16 stands here as UTF-8
   PolygonMesh mesh_;
   std::vector<FileNote> notes_;

@@ -4,6 +4,7 @@
 
 #include <cagewright/core/result.h>
 #include <cagewright/io/mesh_format.h>
+#include <cagewright/io/pose.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
 #include <filesystem>
@@ -23,8 +24,7 @@ namespace cagewright {
 ///  - OFF: polygons and the colours of COFF; faces of one or two corners are points and lines to
 ///    OFF, and skipped as such.
 ///  - glTF: the triangles of the default scene in its coordinates, each mesh once for every node
-///    that shows it, as groups. Rigged meshes stand as they are stored, under their node's
-///    transform; morph targets are not applied.
+///    that shows it, as groups. Rigged meshes and morph targets are as `pose` says.
 ///
 /// The mesh has at least one face, every position is finite and every corner is a vertex. Colours
 /// are scaled to [0, 1]; where only some vertices have one, the others are white.
@@ -32,10 +32,11 @@ namespace cagewright {
 /// Errors: cannot_open, malformed, unsupported, too_large. The message is one line with the file,
 /// the line or byte where there is one, what is wrong and what helps.
 /// Cost: one read and one pass; memory for the file (at most 4 GiB) and the mesh.
-Result<PolygonMesh> read_mesh(const std::filesystem::path& path);
+Result<PolygonMesh> read_mesh(const std::filesystem::path& path, Pose pose = Pose::shown);
 
 /// The same for a file in memory. `name` stands for the file in messages. A glTF file cannot refer
 /// to others here: unsupported.
-Result<PolygonMesh> read_mesh(std::string_view bytes, MeshFormat format, std::string_view name);
+Result<PolygonMesh> read_mesh(std::string_view bytes, MeshFormat format, std::string_view name,
+                              Pose pose = Pose::shown);
 
 } // namespace cagewright

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cagewright/core/result.h>
+#include <cagewright/io/pose.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
 #include <filesystem>
@@ -30,17 +31,23 @@ struct FileNormals {
 /// as the scene shows them). For STL there are none.
 ///
 /// Errors: those of read_mesh().
-Result<FileNormals> read_normals(const std::filesystem::path& path);
+Result<FileNormals> read_normals(const std::filesystem::path& path, Pose pose = Pose::shown);
 
 /// Writes the file `original` again as `out`, with other positions. Every other byte stays: order,
 /// polygons, texture coordinates, groups, materials, comments, colours, elements of others.
 ///
 /// In glTF the values of the accessors change where they are, with their bounds in the JSON, and
 /// tangents turn with the normals. Nodes, skins (bind pose and joints), and morph targets stay as
-/// they are: positions are those that read_mesh() gives, under the nodes' transforms, taken back
-/// into each node's frame. GLB stays GLB; a buffer in a file of its own is written beside `out`,
-/// under its name with .bin, never over a file that the original refers to, and the URI changed;
-/// the one in the original stays. Links to images stay as they are.
+/// they are: positions are those that read_mesh() gives for the same pose, taken back through the
+/// nodes' transforms, each vertex's own mean of its joints, and the morph targets, so that the
+/// file, posed as before, shows the given positions. Accessors of integers, sparse ones, and those
+/// that share their bytes with others get floats in a new buffer view at the end of the binary
+/// chunk (or in a new buffer); nodes that show one mesh and are to show several shapes get copies
+/// of it, which share all that is not changed. A copy of the vertices compressed by Draco is left
+/// out where they change.
+/// GLB stays GLB; a buffer in a file of its own is written beside `out`, under its name with .bin,
+/// never over a file that the original refers to, and the URI changed; the one in the original
+/// stays. Links to images stay as they are.
 ///
 /// In OBJ a normal whose vertices have turned apart becomes several, one after the other, and the
 /// faces refer to them; where none has, the faces stay as they are.
@@ -53,11 +60,12 @@ Result<FileNormals> read_normals(const std::filesystem::path& path);
 /// \param normals    as many as read_normals() gives, or none: then the file's stay
 ///
 /// Errors: those of read_mesh(); mismatch (other numbers of positions or normals), unsupported
-/// (integer coordinates in PLY; in glTF integer or sparse accessors, a mesh that several nodes show
-/// and that would need several shapes, a node that flattens its mesh), cannot_write (also for a
-/// position that is not finite).
+/// (integer coordinates in PLY; in glTF a vertex that its node or its joints flatten, so that no
+/// stored position shows it where it should be), cannot_write (also for a position that is not
+/// finite).
 Status rewrite_positions(const std::filesystem::path& original, std::span<const Vec3> positions,
-                         std::span<const Vec3> normals, const std::filesystem::path& out);
+                         std::span<const Vec3> normals, const std::filesystem::path& out,
+                         Pose pose = Pose::shown);
 
 /// Writes the mesh that was read from `original` with other positions: by rewrite_positions() if
 /// `out` is named for the same format, else by write_mesh(), without normals.
@@ -65,6 +73,6 @@ Status rewrite_positions(const std::filesystem::path& original, std::span<const 
 /// Errors: theirs.
 Status write_moved(const std::filesystem::path& original, const PolygonMesh& mesh,
                    std::span<const Vec3> positions, std::span<const Vec3> normals,
-                   const std::filesystem::path& out);
+                   const std::filesystem::path& out, Pose pose = Pose::shown);
 
 } // namespace cagewright
