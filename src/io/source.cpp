@@ -61,7 +61,7 @@ Error too_many_vertices(const Source& source, std::size_t count) {
   return source.error("has " + std::to_string(count) +
                           " vertices, more than the 4294967295 that can be counted; simplify the "
                           "model",
-                      ErrorCode::too_large);
+                      ErrorCode::unsupported);
 }
 
 std::string no_such_vertex(std::string_view face, std::string_view vertex, std::size_t count) {
