@@ -44,7 +44,8 @@ int fail(const Error& error);
 // One function for each command, in cli/commands/<name>.cpp: it declares the options and what to
 // run. The order is that of --help.
 #define CAGEWRIGHT_COMMANDS(X)                                                                     \
-  X(generate) X(check) X(compare) X(info) X(bind) X(deform) CAGEWRIGHT_RENDER_COMMAND(X) X(view)
+  X(generate)                                                                                      \
+  X(check) X(compare) X(info) X(bind) X(deform) X(convert) CAGEWRIGHT_RENDER_COMMAND(X) X(view)
 #define CAGEWRIGHT_DECLARE(name) void add_##name(CLI::App& app, Session& session);
 CAGEWRIGHT_COMMANDS(CAGEWRIGHT_DECLARE)
 #undef CAGEWRIGHT_DECLARE

@@ -103,10 +103,25 @@ Result<std::vector<FileNote>> ModelFile::write_moved(std::span<const Vec3> posit
     const Status written = rewrite(positions, normals, out);
     return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
   }
+  Result<MeshAttributes> dress = attributes();
+  if (!dress) {
+    return dress.error();
+  }
+  if (!normals.empty()) {
+    const Result<FileNormals> stored = this->normals();
+    if (!stored) {
+      return stored.error();
+    }
+    dress->normals.assign(normals.begin(), normals.end());
+    dress->normal_of_corner = stored->of_corner;
+    for (Index& normal : dress->normal_of_corner) {
+      const bool is_one = normal < normals.size() && !normals[normal].isZero(0);
+      normal = is_one ? normal : MeshAttributes::none;
+    }
+  }
   PolygonMesh moved = mesh_;
   moved.positions.assign(positions.begin(), positions.end());
-  const Status written = write_mesh(moved, out);
-  return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
+  return write_mesh(moved, *dress, out);
 }
 
 } // namespace cagewright
