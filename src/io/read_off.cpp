@@ -104,7 +104,7 @@ private:
     return static_cast<std::size_t>(*count);
   }
 
-  // One vertex to a line, but for the coordinates, which may run over several.
+  // One vertex to a line.
   Status read_vertex(std::size_t v) {
     std::array<double, 16> values{};
     const std::size_t needed = header_.has_weight ? 4 : 3;

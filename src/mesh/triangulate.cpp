@@ -37,6 +37,7 @@ public:
         view_(PlaneView::of(area_vector(positions, face))) {
     for (std::size_t i = 0; i < ring_.size(); ++i) {
       is_reflex_.push_back(reflex_at(i));
+      reflex_count_ += is_reflex_[i] ? 1U : 0U;
     }
   }
 
@@ -58,10 +59,17 @@ private:
 
   void cut(std::size_t ear, std::vector<Triangle>& triangles) {
     triangles.push_back({ring_[before(ear)], ring_[ear], ring_[wrapped(ear + 1)]});
+    set_reflex(ear, false);
     ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(ear));
     is_reflex_.erase(is_reflex_.begin() + static_cast<std::ptrdiff_t>(ear));
-    is_reflex_[before(ear)] = reflex_at(before(ear));
-    is_reflex_[wrapped(ear)] = reflex_at(wrapped(ear));
+    set_reflex(before(ear), reflex_at(before(ear)));
+    set_reflex(wrapped(ear), reflex_at(wrapped(ear)));
+  }
+
+  void set_reflex(std::size_t i, bool is_reflex) {
+    reflex_count_ -= is_reflex_[i] ? 1U : 0U;
+    reflex_count_ += is_reflex ? 1U : 0U;
+    is_reflex_[i] = is_reflex;
   }
 
   /// The first ear from `from` on. Where there is none the polygon is degenerate, or crosses
@@ -128,7 +136,7 @@ private:
     const Vec3 high = a.cwiseMax(b).cwiseMax(c);
     const int u = view_.axis == 2 ? 0 : view_.axis + 1;
     const int v = view_.axis == 0 ? 2 : view_.axis - 1;
-    for (std::size_t k = 0; k < ring_.size(); ++k) {
+    for (std::size_t k = 0; reflex_count_ > 0 && k < ring_.size(); ++k) {
       if (!is_reflex_[k]) {
         continue;
       }
@@ -148,6 +156,7 @@ private:
   std::vector<Index> ring_; // what is left
   PlaneView view_;
   std::vector<bool> is_reflex_; // as ring_
+  std::size_t reflex_count_ = 0;
 };
 
 void cut_quad(std::span<const Vec3> x, std::span<const Index> q, std::vector<Triangle>& triangles) {
