@@ -85,6 +85,32 @@ std::vector<NamedBox> boxes_of(TriangleView mesh, const VoxelizeOptions& voxels,
   return boxes;
 }
 
+/// The mesh with the faces that visit a vertex twice cut into triangles: a polygon with a hole that
+/// is joined to its outline by a bridge is a surface like any other.
+PolygonMesh with_simple_faces(const PolygonMesh& mesh) {
+  std::vector<Index> sorted;
+  const auto is_simple = [&](std::size_t f) {
+    sorted.assign(mesh.face(f).begin(), mesh.face(f).end());
+    std::ranges::sort(sorted);
+    return sorted.size() == 3 || std::ranges::adjacent_find(sorted) == sorted.end();
+  };
+  const Triangulation cut = triangulate(mesh);
+  PolygonMesh simple;
+  simple.positions = mesh.positions;
+  for (std::size_t f = 0, t = 0; f < mesh.face_count(); ++f) {
+    const bool is_whole = is_simple(f);
+    if (is_whole) {
+      simple.add_face(mesh.face(f));
+    }
+    for (; t < cut.triangles.size() && cut.face_of[t] == f; ++t) {
+      if (!is_whole) {
+        simple.add_face(cut.triangles[t]);
+      }
+    }
+  }
+  return simple;
+}
+
 Result<Info> describe(const PolygonMesh& model, const VoxelizeOptions& voxels,
                       const Progress& progress) {
   const TriangleMesh triangles = to_triangle_mesh(model);
@@ -95,7 +121,7 @@ Result<Info> describe(const PolygonMesh& model, const VoxelizeOptions& voxels,
   for (std::size_t f = 0; f < model.face_count(); ++f) {
     ++info.faces_by_sides[model.face(f).size()];
   }
-  info.topology = topology(welded);
+  info.topology = topology(with_simple_faces(welded));
   info.unused_vertices = topology(model).unused_vertices.size();
   info.degenerate_triangles = count_degenerate(triangles);
   progress(0.2, "self-intersections");

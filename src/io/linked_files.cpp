@@ -52,7 +52,7 @@ private:
 };
 
 void find_in_obj(const Source& source, Links& links) {
-  TextCursor cursor(source, TextCursor::Backslash::continues);
+  TextCursor cursor(source);
   for (; cursor.next_word_of_file(); cursor.next_line()) {
     if (cursor.word() == "mtllib") {
       links.add_line(cursor.rest_of_line());

@@ -2,6 +2,8 @@
 
 #include "io/binary.h"
 #include "io/off_header.h"
+#include "io/ply_header.h"
+#include "io/readers.h"
 #include "io/text_cursor.h"
 
 #include <algorithm>
@@ -43,7 +45,7 @@ std::optional<MeshFormat> format_of_content(std::string_view bytes) {
   if (bytes.starts_with("glTF")) {
     return MeshFormat::gltf;
   }
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) {
+  if (begins_ply(bytes)) {
     return MeshFormat::ply;
   }
   if (has_the_size_of_binary_stl(bytes)) {
@@ -57,7 +59,7 @@ std::optional<MeshFormat> format_of_content(std::string_view bytes) {
   if (off_header(word)) {
     return MeshFormat::off;
   }
-  if (word == "solid" || word == "SOLID") {
+  if (const std::string lower = stl_keyword(word); lower == "solid" || lower == "facet") {
     return MeshFormat::stl;
   }
   if (word.starts_with('{')) {

@@ -1,5 +1,6 @@
 #include <cagewright/io/model_file.h>
 
+#include "io/gltf_dress.h"
 #include "io/read_file.h"
 #include "io/readers.h"
 #include "io/utf16.h"
@@ -87,7 +88,19 @@ Result<MeshAttributes> ModelFile::attributes() const {
   reading.attributes = &attributes;
   const Result<PolygonMesh> mesh =
       read_as(format_, {name_, bytes_->view()}, folder_of(path_, on_disk_), reading);
-  return mesh ? Result<MeshAttributes>(std::move(attributes)) : mesh.error();
+  if (!mesh) {
+    return mesh.error();
+  }
+  if (format_ == MeshFormat::gltf) {
+    list_gltf_dress({name_, bytes_->view()}, attributes);
+    Result<FileNormals> normals = this->normals();
+    if (!normals) {
+      return normals.error();
+    }
+    attributes.normals = std::move(normals->normals);
+    attributes.normal_of_corner = std::move(normals->of_corner);
+  }
+  return attributes;
 }
 
 Status ModelFile::rewrite(std::span<const Vec3> positions, std::span<const Vec3> normals,
@@ -103,10 +116,25 @@ Result<std::vector<FileNote>> ModelFile::write_moved(std::span<const Vec3> posit
     const Status written = rewrite(positions, normals, out);
     return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
   }
+  Result<MeshAttributes> dress = attributes();
+  if (!dress) {
+    return dress.error();
+  }
+  if (!normals.empty()) {
+    const Result<FileNormals> stored = this->normals();
+    if (!stored) {
+      return stored.error();
+    }
+    dress->normals.assign(normals.begin(), normals.end());
+    dress->normal_of_corner = stored->of_corner;
+    for (Index& normal : dress->normal_of_corner) {
+      const bool is_one = normal < normals.size() && !normals[normal].isZero(0);
+      normal = is_one ? normal : MeshAttributes::none;
+    }
+  }
   PolygonMesh moved = mesh_;
   moved.positions.assign(positions.begin(), positions.end());
-  const Status written = write_mesh(moved, out);
-  return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
+  return write_mesh(moved, *dress, out);
 }
 
 } // namespace cagewright

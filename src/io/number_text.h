@@ -12,7 +12,8 @@ namespace cagewright {
 /// Appends the shortest digits that read back as the same number, whatever the locale.
 template <class Number> void append_number(std::string& text, Number value) {
   char digits[32]; // the longest double has 24
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+  text.append(digits, static_cast<std::size_t>(
+                          std::to_chars(digits, digits + sizeof digits, value).ptr - digits));
 }
 
 /// The unit normal of a facet as STL has it; zero where the corners are on a line. The edges are

@@ -17,31 +17,39 @@ struct OffHeader {
   bool has_size = false;    ///< n: points of another dimension
 };
 
-/// The header that a word is, its letters in any order, as programs differ; none for other words.
-constexpr std::optional<OffHeader> off_header(std::string_view word) {
-  if (!word.ends_with("OFF")) {
-    return std::nullopt;
-  }
-  word.remove_suffix(3);
+/// The header that a word begins with, its letters in any order, as programs differ, and the
+/// letters it takes; none for other words. Thousands of published files have the number of vertices
+/// right behind it: "OFF642".
+struct OffHeaderWord {
   OffHeader header;
-  while (!word.empty()) {
-    if (word.starts_with("ST")) {
-      header.has_texture = true;
-      word.remove_prefix(1);
-    } else if (word[0] == 'C') {
-      header.has_color = true;
-    } else if (word[0] == 'N') {
-      header.has_normal = true;
-    } else if (word[0] == '4') {
-      header.has_weight = true;
-    } else if (word[0] == 'n') {
-      header.has_size = true;
+  std::size_t length = 0;
+};
+constexpr std::optional<OffHeaderWord> off_header(std::string_view word) {
+  OffHeaderWord found;
+  std::string_view left = word;
+  while (!left.starts_with("OFF")) {
+    if (left.starts_with("ST")) {
+      found.header.has_texture = true;
+      left.remove_prefix(1);
+    } else if (left.starts_with('C')) {
+      found.header.has_color = true;
+    } else if (left.starts_with('N')) {
+      found.header.has_normal = true;
+    } else if (left.starts_with('4')) {
+      found.header.has_weight = true;
+    } else if (left.starts_with('n')) {
+      found.header.has_size = true;
     } else {
       return std::nullopt;
     }
-    word.remove_prefix(1);
+    left.remove_prefix(1);
   }
-  return header;
+  left.remove_prefix(3);
+  found.length = word.size() - left.size();
+  if (left.find_first_not_of("0123456789") != left.npos) {
+    return std::nullopt;
+  }
+  return found;
 }
 
 /// Bytes of a vertex in a binary file: floats only.

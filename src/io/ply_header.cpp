@@ -2,6 +2,7 @@
 
 #include "io/text_cursor.h"
 
+#include <algorithm>
 #include <string>
 
 namespace cagewright {
@@ -14,14 +15,23 @@ std::optional<PlyType> type_of(std::string_view name) {
   };
   // Both families of names are in use; the 64-bit integers are an extension of some programs.
   constexpr Known known[] = {
-      {"char", PlyType::int8},       {"int8", PlyType::int8},      {"uchar", PlyType::uint8},
-      {"uint8", PlyType::uint8},     {"short", PlyType::int16},    {"int16", PlyType::int16},
-      {"ushort", PlyType::uint16},   {"uint16", PlyType::uint16},  {"int", PlyType::int32},
-      {"int32", PlyType::int32},     {"uint", PlyType::uint32},    {"uint32", PlyType::uint32},
-      {"int64", PlyType::int64},     {"uint64", PlyType::uint64},  {"float", PlyType::float32},
-      {"float32", PlyType::float32}, {"double", PlyType::float64}, {"float64", PlyType::float64}};
+      {"char", PlyType::int8},        {"int8", PlyType::int8},      {"uchar", PlyType::uint8},
+      {"uint8", PlyType::uint8},      {"short", PlyType::int16},    {"int16", PlyType::int16},
+      {"ushort", PlyType::uint16},    {"uint16", PlyType::uint16},  {"int", PlyType::int32},
+      {"int32", PlyType::int32},      {"uint", PlyType::uint32},    {"uint32", PlyType::uint32},
+      {"int64", PlyType::int64},      {"uint64", PlyType::uint64},  {"float", PlyType::float32},
+      {"float32", PlyType::float32},  {"double", PlyType::float64}, {"float64", PlyType::float64},
+      {"double64", PlyType::float64}, {"single", PlyType::float32}, {"real", PlyType::float32},
+      {"ubyte", PlyType::uint8},      {"byte", PlyType::uint8}};
+  std::string lower(name.substr(0, 16));
+  std::ranges::transform(lower, lower.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  });
+  if (lower.ends_with("_t")) {
+    lower.resize(lower.size() - 2); // uint8_t
+  }
   for (const Known& kind : known) {
-    if (name == kind.name) {
+    if (lower == kind.name) {
       return kind.type;
     }
   }
@@ -30,17 +40,19 @@ std::optional<PlyType> type_of(std::string_view name) {
 
 class HeaderReader {
 public:
-  // The header's lines end as its first line does, whatever bytes follow the header.
+  // The header's lines end with \n, before which a \r is a blank, or with \r alone as its first
+  // line does, whatever bytes follow the header.
   explicit HeaderReader(const Source& source)
       : source_(source), at_(source.bytes.find_first_of("\r\n")) {
     if (at_ != source.bytes.npos) {
-      line_end_ = source.bytes.substr(at_, source.bytes.substr(at_, 2) == "\r\n" ? 2 : 1);
-      at_ += line_end_.size();
+      line_end_ =
+          source.bytes[at_] == '\r' && source.bytes.substr(at_ + 1, 1) != "\n" ? '\r' : '\n';
+      at_ = source.bytes.find(line_end_, at_) + 1;
     }
   }
 
   Result<PlyHeader> read() {
-    if (!source_.bytes.starts_with("ply") || line_end_.empty()) {
+    if (!begins_ply(source_.bytes)) {
       return source_.error("does not begin with a line 'ply'; check that this is a PLY file");
     }
     while (true) {
@@ -52,13 +64,13 @@ public:
       words_ = source_.bytes.substr(at_, end - at_);
       const std::string_view keyword = word();
       if (keyword == "end_header") {
-        header_.end = end + line_end_.size();
+        header_.end = end + 1;
         break;
       }
       if (const Status status = read_line(keyword); !status) {
         return status.error();
       }
-      at_ = end + line_end_.size();
+      at_ = end + 1;
     }
     return has_format_
                ? Result<PlyHeader>(std::move(header_))
@@ -76,7 +88,12 @@ private:
     if (keyword == "property") {
       return read_property();
     }
-    if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) {
+    if (keyword == "comment" || keyword == "obj_info") {
+      const std::size_t from = std::min(words_.find_first_not_of(" \t"), words_.size());
+      header_.comments.push_back(words_.substr(from, words_.find_last_not_of(" \t\r") + 1 - from));
+      return success();
+    }
+    if (keyword.empty()) {
       return success();
     }
     if (header_.elements.empty()) {
@@ -151,9 +168,9 @@ private:
   }
 
   Source source_;
-  std::size_t at_;            // the start of the line
-  std::string_view words_;    // what is left of it
-  std::string_view line_end_; // \n, \r\n or \r
+  std::size_t at_;         // the start of the line
+  std::string_view words_; // what is left of it
+  char line_end_ = '\n';
   PlyHeader header_;
   bool has_format_ = false;
 };
@@ -187,6 +204,23 @@ std::optional<std::size_t> PlyElement::find(std::string_view property) const {
     }
   }
   return std::nullopt;
+}
+
+std::size_t PlyHeader::rows() const {
+  std::size_t sum = 0;
+  for (const PlyElement& element : elements) {
+    sum += element.properties.empty() ? 0 : element.count;
+  }
+  return sum;
+}
+
+bool begins_ply(std::string_view bytes) {
+  if (bytes.starts_with("\xef\xbb\xbf")) {
+    bytes.remove_prefix(3); // the mark that some editors put before UTF-8 text
+  }
+  const std::size_t end = bytes.find_first_not_of(" \t", 3);
+  return bytes.starts_with("ply") && end != bytes.npos &&
+         (bytes[end] == '\n' || bytes[end] == '\r');
 }
 
 Result<PlyHeader> read_ply_header(const Source& source) {

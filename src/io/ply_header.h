@@ -36,8 +36,15 @@ struct PlyHeader {
   enum class Encoding { text, little_endian, big_endian };
   Encoding encoding = Encoding::text;
   std::vector<PlyElement> elements;
-  std::size_t end = 0; ///< offset of the first byte after the header
+  std::vector<std::string_view> comments; ///< and lines "obj_info"
+  std::size_t end = 0;                    ///< offset of the first byte after the header
+
+  /// Rows that take room in the file: those of elements with properties.
+  [[nodiscard]] std::size_t rows() const;
 };
+
+/// Whether the first line is the word "ply" alone.
+bool begins_ply(std::string_view bytes);
 
 /// Parses the header. Errors: malformed, unsupported.
 Result<PlyHeader> read_ply_header(const Source& source);

@@ -44,20 +44,29 @@ inline double load_as_double(const char* from, PlyType type, std::endian order) 
 ///  - begin_row(): to the next row of an element; false at the end of the file
 ///  - value(type): the next value of the row; none where the row or the file ends
 ///  - end_row(): past what is left of the row
+///  - at_end(): whether nothing stands behind the last value
 ///  - remaining(), least_size(type): bytes that are left, and that a value takes at least
 ///  - bad_value(where): the error where value() gave none
-///  - error(what): an error about the row
+///  - error(what), place(): an error about the row, and where it is
 ///  - begin(), end(): where the last value stands in the file
 
-/// One row to a line, as the format's own description has it.
+/// Rows as text. The format's own description has one row to a line; where there are as many lines
+/// as rows, a row ends with its line, whatever more that holds. Some programs break rows or put
+/// several on a line: else values are counted, not lines.
 class PlyText {
 public:
-  PlyText(const Source& source, std::size_t begin) : cursor_(source) { cursor_.move_to(begin); }
+  PlyText(const Source& source, const PlyHeader& header) : cursor_(source) {
+    cursor_.move_to(header.end);
+    by_lines_ = count_lines() == header.rows();
+  }
 
   bool begin_row() { return cursor_.next_word_of_file(); }
 
   std::optional<double> value(PlyType) {
     cursor_.skip_blanks();
+    if (!by_lines_) {
+      cursor_.next_word_of_file();
+    }
     begin_ = cursor_.offset();
     return cursor_.any_number();
   }
@@ -65,7 +74,14 @@ public:
   [[nodiscard]] std::size_t begin() const { return begin_; }
   [[nodiscard]] std::size_t end() const { return cursor_.offset(); }
 
-  void end_row() { cursor_.next_line(); }
+  void end_row() {
+    if (by_lines_) {
+      cursor_.next_line();
+    }
+  }
+
+  /// Whether nothing stands behind the last value.
+  bool at_end() { return !cursor_.next_word_of_file(); }
 
   [[nodiscard]] std::size_t remaining() const { return cursor_.remaining() + 1; }
 
@@ -73,17 +89,30 @@ public:
   static std::size_t least_size(PlyType) { return 2; }
 
   [[nodiscard]] Error bad_value(const std::string& where) const {
-    return cursor_.at_line_end()
-               ? cursor_.error("the line ends within " + where + std::string(export_again))
-               : cursor_.error(in_quotes(cursor_.peek_word()) + " is not a number" +
-                               std::string(export_again));
+    if (!cursor_.at_line_end()) {
+      return cursor_.error(not_a_number(cursor_.peek_word()));
+    }
+    return cursor_.error((by_lines_ ? "the line ends within " : "the file ends within ") + where +
+                         (by_lines_ ? "" : "; it is cut short") + std::string(export_again));
   }
 
   [[nodiscard]] Error error(const std::string& what) const { return cursor_.error(what); }
+  [[nodiscard]] std::string place() const { return cursor_.place(); }
 
 private:
+  /// Lines with a word on them, from here.
+  [[nodiscard]] std::size_t count_lines() const {
+    TextCursor ahead = cursor_;
+    std::size_t lines = 0;
+    for (; ahead.next_word_of_file(); ahead.next_line()) {
+      ++lines;
+    }
+    return lines;
+  }
+
   TextCursor cursor_;
   std::size_t begin_ = 0; // of the last value
+  bool by_lines_;
 };
 
 class PlyBinary {
@@ -110,6 +139,7 @@ public:
   [[nodiscard]] std::size_t end() const { return at_; }
 
   void end_row() {}
+  [[nodiscard]] bool at_end() const { return remaining() == 0; }
 
   [[nodiscard]] std::size_t remaining() const { return source_.bytes.size() - at_; }
 
@@ -123,6 +153,7 @@ public:
   [[nodiscard]] Error error(const std::string& what) const {
     return source_.error_at_byte(row_, what);
   }
+  [[nodiscard]] std::string place() const { return source_.place_at_byte(row_); }
 
 private:
   Source source_;

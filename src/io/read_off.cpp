@@ -1,6 +1,8 @@
 #include "io/binary.h"
 #include "io/off_header.h"
+#include "io/off_text.h"
 #include "io/readers.h"
+#include "io/repeated_corners.h"
 #include "io/text_cursor.h"
 
 #include <algorithm>
@@ -23,13 +25,15 @@ bool is_surface(std::size_t corners) {
 
 class OffReader {
 public:
-  OffReader(const Source& source, const TextCursor& cursor, OffHeader header)
-      : source_(source), cursor_(cursor), header_(header) {}
+  OffReader(const Source& source, const TextCursor& cursor, OffHeader header, Reading& reading)
+      : reading_(reading), attributes_(reading.attributes), source_(source), cursor_(cursor),
+        header_(header) {}
 
   Result<PolygonMesh> read() {
     if (const Status status = read_counts(); !status) {
       return status.error();
     }
+    layout_ = off_layout(cursor_, header_, counts_.vertices);
     mesh_.positions.reserve(counts_.vertices);
     for (std::size_t v = 0; v < counts_.vertices; ++v) {
       if (const Status status = read_vertex(v); !status) {
@@ -45,6 +49,9 @@ public:
       return no_faces(source_);
     }
     normalize_colors(mesh_);
+    if (attributes_ != nullptr) {
+      finish_attributes();
+    }
     return std::move(mesh_);
   }
 
@@ -81,6 +88,7 @@ private:
     if (required) {
       cursor_.next_word_of_file();
     } else {
+      skip_off_edges(cursor_);
       cursor_.skip_blanks();
       if (cursor_.at_line_end()) {
         return std::size_t{0};
@@ -96,32 +104,96 @@ private:
     return static_cast<std::size_t>(*count);
   }
 
-  // One vertex to a line; what its line has more than the header says is ignored.
+  // One vertex to a line.
   Status read_vertex(std::size_t v) {
-    std::array<double, 10> values{};
-    const std::size_t color = header_.has_normal ? 6 : 3;
-    const std::size_t wanted = header_.has_color ? color + 4 : 3;
+    std::array<double, 16> values{};
+    const std::size_t needed = header_.has_weight ? 4 : 3;
     std::size_t count = 0;
     if (!cursor_.next_word_of_file()) {
       return ends_early(v, "vertex", counts_.vertices);
     }
-    for (; !cursor_.at_line_end() && count < wanted; cursor_.skip_blanks()) {
-      const std::optional<double> value = count < 3 ? cursor_.number() : cursor_.any_number();
+    for (; !cursor_.at_line_end() && count < values.size(); cursor_.skip_blanks()) {
+      const std::optional<double> value = count < needed ? cursor_.number() : cursor_.any_number();
+      if (!value && count < needed) {
+        return cursor_.error(not_a_number(cursor_.peek_word()));
+      }
       if (!value) {
-        return cursor_.error(found_here() + " is not a finite number" + std::string(export_again));
+        break;
       }
       values[count++] = *value;
     }
-    if (count < 3) {
-      return cursor_.error("vertex " + std::to_string(v) + " needs 3 coordinates, but has " +
-                           std::to_string(count) + std::string(export_again));
+    if (count < needed) {
+      return cursor_.error("vertex " + std::to_string(v) + " needs " + std::to_string(needed) +
+                           " coordinates, but has " + std::to_string(count) +
+                           std::string(export_again));
     }
-    mesh_.positions.emplace_back(values[0], values[1], values[2]);
-    if (header_.has_color) {
-      mesh_.colors.push_back(count < color + 3 ? white : color_at(&values[color], count - color));
+    Vec3 position(values[0], values[1], values[2]);
+    if (header_.has_weight) {
+      position /= values[3];
+      if (!position.allFinite()) {
+        return cursor_.error("vertex " + std::to_string(v) +
+                             " lies at infinity: its fourth coordinate is " +
+                             std::to_string(values[3]) + std::string(export_again));
+      }
     }
+    mesh_.positions.push_back(position);
+    keep_dress(values, count, needed);
     cursor_.next_line();
     return success();
+  }
+
+  void keep_dress(const std::array<double, 16>& values, std::size_t count, std::size_t needed) {
+    if (header_.has_color) {
+      const std::size_t end = std::min(count, layout_.color_end);
+      mesh_.colors.push_back(
+          end < layout_.color + 3 ? white : color_at(&values[layout_.color], end - layout_.color));
+    }
+    const bool is_plain = !header_.has_color && !header_.has_normal && !header_.has_texture;
+    if (is_plain && count > needed) {
+      reading_.notes.add(
+          "extra_numbers", [&] { return cursor_.place(); },
+          "more numbers behind a vertex than the header tells of; they are left out (a header "
+          "COFF says that they are colours)");
+    }
+    if (attributes_ == nullptr) {
+      return;
+    }
+    if (header_.has_normal) {
+      attributes_->normals.emplace_back(Vec3::Zero());
+      if (count >= layout_.normal + 3) {
+        attributes_->normals.back() =
+            Vec3(values[layout_.normal], values[layout_.normal + 1], values[layout_.normal + 2]);
+      }
+    }
+    if (layout_.texture != 0) {
+      attributes_->texture_points.push_back({values[layout_.texture], values[layout_.texture + 1]});
+    }
+  }
+
+  void finish_attributes() {
+    MeshAttributes& all = *attributes_;
+    if (header_.has_normal) {
+      all.normal_of_corner.assign(mesh_.corners().begin(), mesh_.corners().end());
+      for (Index& corner : all.normal_of_corner) {
+        corner = all.normals[corner].allFinite() ? corner : MeshAttributes::none;
+      }
+    }
+    if (layout_.texture != 0) {
+      all.texture_of_corner.assign(mesh_.corners().begin(), mesh_.corners().end());
+    }
+    scale_face_colors();
+  }
+
+  // Like those of vertices: bytes if any channel is above 1.
+  void scale_face_colors() {
+    if (!has_face_color_) {
+      attributes_->face_colors.clear();
+      return;
+    }
+    PolygonMesh scaled;
+    scaled.colors = std::move(attributes_->face_colors);
+    normalize_colors(scaled);
+    attributes_->face_colors = std::move(scaled.colors);
   }
 
   static std::array<float, 4> color_at(const double* values, std::size_t count) {
@@ -149,11 +221,41 @@ private:
         return status;
       }
     }
-    if (is_surface(corners_.size())) {
-      mesh_.add_face(corners_);
-    }
+    keep_face(begin);
     cursor_.next_line();
     return success();
+  }
+
+  void keep_face(std::size_t begin) {
+    const auto place = [&] { return source_.place_in_line(begin); };
+    if (!is_surface(corners_.size())) {
+      reading_.notes.add("short_face", place,
+                         "a face of " + counted(corners_.size(), "corner") +
+                             " is no surface and is left out");
+      return;
+    }
+    if (drop_repeated_corners(corners_, [](Index vertex) { return vertex; })) {
+      reading_.notes.add("repeated_corner", place, repeated_corner_note);
+    }
+    mesh_.add_face(corners_);
+    if (attributes_ != nullptr) {
+      keep_face_color();
+    }
+  }
+
+  // Behind the corners: nothing, a number of a colour map, or three or four channels.
+  void keep_face_color() {
+    std::array<double, 4> values{};
+    std::size_t count = 0;
+    for (cursor_.skip_blanks(); count < 4 && !cursor_.at_line_end(); cursor_.skip_blanks()) {
+      const std::optional<double> value = cursor_.any_number();
+      if (!value) {
+        break;
+      }
+      values[count++] = *value;
+    }
+    attributes_->face_colors.push_back(count < 3 ? white : color_at(values.data(), count));
+    has_face_color_ |= count >= 3;
   }
 
   Status read_corner(std::size_t f, std::int64_t count) {
@@ -195,20 +297,24 @@ private:
                          counted(want, noun) + "; it is cut short" + std::string(export_again));
   }
 
+  Reading& reading_;
+  MeshAttributes* attributes_; // or null
   Source source_;
   TextCursor cursor_;
   OffHeader header_;
+  OffLayout layout_;
   Counts counts_;
   PolygonMesh mesh_;
   std::vector<Index> corners_;
+  bool has_face_color_ = false;
 };
 
 // The same numbers as big-endian floats and 32-bit integers; each face ends with a count of colour
 // channels and those.
 class OffBinaryReader {
 public:
-  OffBinaryReader(const Source& source, std::size_t begin, OffHeader header)
-      : source_(source), at_(begin), header_(header) {}
+  OffBinaryReader(const Source& source, std::size_t begin, OffHeader header, Reading& reading)
+      : reading_(reading), source_(source), at_(begin), header_(header) {}
 
   Result<PolygonMesh> read() {
     const std::size_t begin = at_;
@@ -237,6 +343,9 @@ public:
       return no_faces(source_);
     }
     normalize_colors(mesh_);
+    if (reading_.attributes != nullptr && (header_.has_normal || header_.has_texture)) {
+      reading_.attributes->others.emplace_back("normals and texture points of binary OFF");
+    }
     return std::move(mesh_);
   }
 
@@ -279,9 +388,17 @@ private:
       return cut_short(begin, f);
     }
     at_ += std::size_t{4} * *channels;
-    if (is_surface(corners_.size())) {
-      mesh_.add_face(corners_);
+    const auto place = [&] { return source_.place_at_byte(begin); };
+    if (!is_surface(corners_.size())) {
+      reading_.notes.add("short_face", place,
+                         "a face of " + counted(corners_.size(), "corner") +
+                             " is no surface and is left out");
+      return success();
     }
+    if (drop_repeated_corners(corners_, [](Index vertex) { return vertex; })) {
+      reading_.notes.add("repeated_corner", place, repeated_corner_note);
+    }
+    mesh_.add_face(corners_);
     return success();
   }
 
@@ -302,6 +419,7 @@ private:
     return load<std::uint32_t>(source_.bytes.data() + at_ - 4, std::endian::big);
   }
 
+  Reading& reading_;
   Source source_;
   std::size_t at_;
   OffHeader header_;
@@ -312,23 +430,30 @@ private:
 } // namespace
 
 Result<PolygonMesh> read_off(const Source& source, Reading& reading) {
-  static_cast<void>(reading);
   TextCursor cursor(source);
-  cursor.next_word_of_file();
-  const std::optional<OffHeader> header = off_header(cursor.peek_word());
-  if (header) {
-    cursor.word();
-    if (header->has_weight || header->has_size) {
-      return cursor.error("points of other than 3 coordinates are not supported; export the model "
-                          "in 3 dimensions");
+  const OffHeader header = take_off_header(cursor).value_or(OffHeader{}); // the word is optional
+  cursor.skip_blanks();
+  if (header.has_size) {
+    cursor.next_word_of_file();
+    const std::size_t at = cursor.offset();
+    const std::optional<std::int64_t> dimension = cursor.integer();
+    if (dimension != 3 || header.has_weight) {
+      return source.error_in_line(at, "points of " +
+                                          (dimension ? std::to_string(*dimension) : "unknown") +
+                                          (header.has_weight ? " homogeneous" : "") +
+                                          " dimensions (nOFF) are not supported; export the model "
+                                          "in 3 dimensions");
     }
   }
-  cursor.skip_blanks();
-  if (header && cursor.peek_word() == "BINARY") {
+  if (cursor.peek_word() == "BINARY") {
+    if (header.has_weight) {
+      return cursor.error("binary OFF with homogeneous coordinates (4OFF) is not supported; export "
+                          "it as text or PLY");
+    }
     cursor.next_line();
-    return OffBinaryReader(source, cursor.offset(), *header).read();
+    return OffBinaryReader(source, cursor.offset(), header, reading).read();
   }
-  return OffReader(source, cursor, header.value_or(OffHeader{})).read(); // the word is optional
+  return OffReader(source, cursor, header, reading).read();
 }
 
 } // namespace cagewright

@@ -1,5 +1,6 @@
 #include "io/ply_values.h"
 #include "io/readers.h"
+#include "io/repeated_corners.h"
 
 #include <algorithm>
 #include <array>
@@ -37,8 +38,9 @@ double unit_of(PlyType type) {
 
 template <class Values> class PlyReader {
 public:
-  PlyReader(const Source& source, const PlyHeader& header, Values values)
-      : source_(source), header_(header), values_(std::move(values)) {}
+  PlyReader(const Source& source, const PlyHeader& header, Values values, Reading& reading)
+      : reading_(reading), attributes_(reading.attributes), source_(source), header_(header),
+        values_(std::move(values)) {}
 
   Result<PolygonMesh> read() {
     const auto vertices =
@@ -56,6 +58,14 @@ public:
     if (mesh_.face_count() == 0) {
       return no_faces(source_);
     }
+    if (!values_.at_end()) {
+      reading_.notes.add(
+          "trailing_bytes", [&] { return values_.place(); },
+          "what stands behind the last element of the header is left out");
+    }
+    if (attributes_ != nullptr) {
+      finish_attributes();
+    }
     return std::move(mesh_);
   }
 
@@ -69,10 +79,13 @@ private:
       return read_vertices(element);
     }
     if (element.name == "face" && element.count != 0) {
-      return read_lists(element, [this] { return add_face(); });
+      return read_lists(element, [this, &element] { return add_face(element); });
     }
     if (element.name == "tristrips" && element.count != 0) {
       return read_lists(element, [this] { return add_strip(); });
+    }
+    if (attributes_ != nullptr && element.count != 0) {
+      attributes_->others.push_back("the element " + in_quotes(element.name));
     }
     return read_rows(element, {}, [] { return success(); });
   }
@@ -176,6 +189,9 @@ private:
         find_channel(element, "alpha")};
     const bool has_color = channels[0] && channels[1] && channels[2];
     mesh_.positions.reserve(element.count);
+    if (attributes_ != nullptr) {
+      plan_vertex_values(element, axes, channels, has_color);
+    }
     return read_rows(element, {}, [&]() -> Status {
       const Vec3 p(values_of_row_[axes[0]], values_of_row_[axes[1]], values_of_row_[axes[2]]);
       if (!p.allFinite()) {
@@ -184,6 +200,9 @@ private:
                              std::string(export_again));
       }
       mesh_.positions.push_back(p);
+      if (attributes_ != nullptr) {
+        keep_vertex_values();
+      }
       if (has_color) {
         std::array<float, 4>& color = mesh_.colors.emplace_back();
         for (std::size_t i = 0; i < 4; ++i) {
@@ -209,17 +228,147 @@ private:
     return value > 0 ? static_cast<float>(std::min(value, 1.0)) : 0.0F; // nan becomes 0
   }
 
+  // Which properties of the vertices become what.
+  void plan_vertex_values(const PlyElement& element, const std::array<std::size_t, 3>& axes,
+                          const std::array<std::optional<std::size_t>, 4>& channels,
+                          bool has_color) {
+    std::vector<bool> is_used(element.properties.size(), false);
+    const auto use = [&](std::optional<std::size_t> property) {
+      is_used[*property] = true;
+      return *property;
+    };
+    for (const std::size_t axis : axes) {
+      use(axis);
+    }
+    for (const auto& channel : channels) {
+      if (has_color && channel) {
+        use(channel);
+      }
+    }
+    const auto nx = find_scalar(element, "nx");
+    const auto ny = find_scalar(element, "ny");
+    const auto nz = find_scalar(element, "nz");
+    if (nx && ny && nz) {
+      normal_ = {use(nx), use(ny), use(nz)};
+    }
+    constexpr std::array<std::array<std::string_view, 2>, 4> texture_names = {
+        {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}};
+    for (const auto& [first, second] : texture_names) {
+      const auto u = find_scalar(element, first);
+      const auto v = find_scalar(element, second);
+      if (u && v && !texture_) {
+        texture_ = {use(u), use(v)};
+      }
+    }
+    for (std::size_t i = 0; i < is_used.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      if (property.count_type) {
+        attributes_->others.push_back("the lists " + in_quotes(property.name) + " of vertices");
+      } else if (!is_used[i]) {
+        kept_.push_back(i);
+        attributes_->vertex_values.push_back(
+            {std::string(property.name), is_integer_type(property.type), {}});
+      }
+    }
+  }
+
+  void keep_vertex_values() {
+    if (normal_) {
+      attributes_->normals.emplace_back(values_of_row_[(*normal_)[0]],
+                                        values_of_row_[(*normal_)[1]],
+                                        values_of_row_[(*normal_)[2]]);
+    }
+    if (texture_) {
+      attributes_->texture_points.push_back(
+          {values_of_row_[(*texture_)[0]], values_of_row_[(*texture_)[1]]});
+    }
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      attributes_->vertex_values[i].values.push_back(values_of_row_[kept_[i]]);
+    }
+  }
+
+  void plan_face_values(const PlyElement& element, std::size_t corners) {
+    const auto red = find_channel(element, "red");
+    const auto green = find_channel(element, "green");
+    const auto blue = find_channel(element, "blue");
+    if (red && green && blue) {
+      face_color_ = {*red, *green, *blue};
+    }
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      const bool is_color = face_color_ && std::ranges::find(*face_color_, i) != face_color_->end();
+      if (property.count_type && i != corners) {
+        attributes_->others.push_back("the lists " + in_quotes(property.name) + " of faces");
+      } else if (i != corners && !is_color && property.name != "alpha") {
+        kept_of_face_.push_back(i);
+        attributes_->face_values.push_back(
+            {std::string(property.name), is_integer_type(property.type), {}});
+      }
+    }
+  }
+
+  void keep_face_values(const PlyElement& element) {
+    if (face_color_) {
+      std::array<float, 4>& color = attributes_->face_colors.emplace_back();
+      for (std::size_t i = 0; i < 3; ++i) {
+        color[i] = channel_value(element, (*face_color_)[i]);
+      }
+      color[3] = 1;
+    }
+    for (std::size_t i = 0; i < kept_of_face_.size(); ++i) {
+      attributes_->face_values[i].values.push_back(values_of_row_[kept_of_face_[i]]);
+    }
+  }
+
+  void finish_attributes() {
+    for (const std::string_view comment : header_.comments) {
+      attributes_->comments.emplace_back(comment);
+    }
+    if (normal_) {
+      attributes_->normal_of_corner.assign(mesh_.corners().begin(), mesh_.corners().end());
+      for (Index& corner : attributes_->normal_of_corner) {
+        corner = attributes_->normals[corner].allFinite() ? corner : MeshAttributes::none;
+      }
+    }
+    if (texture_) {
+      attributes_->texture_of_corner.assign(mesh_.corners().begin(), mesh_.corners().end());
+    }
+  }
+
+  static bool is_integer_type(PlyType type) {
+    return type != PlyType::float32 && type != PlyType::float64;
+  }
+
   template <class Use> Status read_lists(const PlyElement& element, Use use) {
     std::optional<std::size_t> corners = element.find("vertex_indices");
     corners = corners ? corners : element.find("vertex_index");
+    corners = corners ? corners : only_list(element);
     if (!corners || !element.properties[*corners].count_type) {
       return source_.error("the element " + in_quotes(element.name) +
                            " has no list 'vertex_indices'" + std::string(export_again));
     }
+    if (attributes_ != nullptr) {
+      plan_face_values(element, *corners);
+    }
     return read_rows(element, corners, use);
   }
 
-  Status add_face() {
+  // Under whatever name: a face with one list of integers has its corners there.
+  static std::optional<std::size_t> only_list(const PlyElement& element) {
+    std::optional<std::size_t> found;
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      if (property.count_type && is_integer_type(property.type)) {
+        if (found) {
+          return std::nullopt;
+        }
+        found = i;
+      }
+    }
+    return found;
+  }
+
+  Status add_face(const PlyElement& element) {
     corners_.clear();
     for (const double value : list_) {
       if (!is_vertex(value)) {
@@ -227,11 +376,21 @@ private:
       }
       corners_.push_back(static_cast<Index>(value));
     }
+    const auto place = [&] { return values_.place(); };
     if (corners_.size() < 3) {
-      return values_.error("face " + std::to_string(row_) + " needs 3 corners, but has " +
-                           std::to_string(corners_.size()) + std::string(export_again));
+      reading_.notes.add("short_face", place,
+                         "face " + std::to_string(row_) + " has " +
+                             counted(corners_.size(), "corner") +
+                             ", is no surface and is left out");
+      return success();
+    }
+    if (drop_repeated_corners(corners_, [](Index vertex) { return vertex; })) {
+      reading_.notes.add("repeated_corner", place, repeated_corner_note);
     }
     mesh_.add_face(corners_);
+    if (attributes_ != nullptr) {
+      keep_face_values(element);
+    }
     return success();
   }
 
@@ -278,6 +437,8 @@ private:
     return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
   }
 
+  Reading& reading_;
+  MeshAttributes* attributes_; // or null
   Source source_;
   const PlyHeader& header_;
   Values values_;
@@ -288,23 +449,27 @@ private:
   std::vector<double> values_of_row_;
   std::vector<double> list_;
   std::vector<Index> corners_;
+  std::optional<std::array<std::size_t, 3>> normal_; // properties, as the next
+  std::optional<std::array<std::size_t, 2>> texture_;
+  std::optional<std::array<std::size_t, 3>> face_color_;
+  std::vector<std::size_t> kept_;         // as vertex_values
+  std::vector<std::size_t> kept_of_face_; // as face_values
 };
 
 } // namespace
 
 Result<PolygonMesh> read_ply(const Source& source, Reading& reading) {
-  static_cast<void>(reading);
   const Result<PlyHeader> header = read_ply_header(source);
   if (!header) {
     return header.error();
   }
   if (header->encoding == PlyHeader::Encoding::text) {
-    return PlyReader(source, *header, PlyText(source, header->end)).read();
+    return PlyReader(source, *header, PlyText(source, *header), reading).read();
   }
   const std::endian order = header->encoding == PlyHeader::Encoding::little_endian
                                 ? std::endian::little
                                 : std::endian::big;
-  return PlyReader(source, *header, PlyBinary(source, header->end, order)).read();
+  return PlyReader(source, *header, PlyBinary(source, header->end, order), reading).read();
 }
 
 } // namespace cagewright

@@ -1,5 +1,6 @@
 #include "io/binary.h"
 #include "io/readers.h"
+#include "io/stl_text.h"
 #include "io/text_cursor.h"
 
 #include <array>
@@ -11,20 +12,48 @@ namespace {
 constexpr std::size_t header_size = 84; // 80 bytes of anything, then the count of facets
 constexpr std::size_t facet_size = 50;  // normal, three corners, two spare bytes
 
-Result<PolygonMesh> read_binary(const Source& source) {
+/// How many facets there are, and what is told where the header says otherwise.
+Result<std::size_t> count_facets(const Source& source, Reading& reading) {
+  const std::string_view bytes = source.bytes;
+  const std::size_t promised = load<std::uint32_t>(bytes.data() + 80);
+  const std::size_t room = (bytes.size() - header_size) / facet_size;
+  const std::size_t spare = (bytes.size() - header_size) % facet_size;
+  const auto place = [&] { return source.place_at_byte(80); };
+  const std::string header = "the header promises " + counted(promised, "facet");
+  // Programs that write while they compute often leave the count as it was.
+  constexpr std::size_t unset = std::numeric_limits<std::uint32_t>::max();
+  if ((promised == 0 || promised == unset) && room > 0 && spare == 0) {
+    reading.notes.add("facet_count", place,
+                      header + ", but the file holds " + std::to_string(room) + "; all are read");
+    return room;
+  }
+  if (promised > room) {
+    return source.error_at_byte(80, header + ", but there is room for " + std::to_string(room) +
+                                        "; the file is cut short or no STL file" +
+                                        std::string(export_again));
+  }
+  if (const std::size_t left = bytes.size() - header_size - facet_size * promised; left > 0) {
+    reading.notes.add("trailing_bytes", place,
+                      header + "; " + counted(left, "byte") + " behind them are left out" +
+                          (left >= facet_size
+                               ? " (room for " + std::to_string(left / facet_size) + " more)"
+                               : std::string()));
+  }
+  return promised;
+}
+
+Result<PolygonMesh> read_binary(const Source& source, Reading& reading) {
   const std::string_view bytes = source.bytes;
   if (bytes.size() < header_size) {
     return source.error_at_byte(bytes.size(), "the file ends within the STL header of 84 bytes; it "
                                               "is cut short or no STL file" +
                                                   std::string(export_again));
   }
-  const auto facets = load<std::uint32_t>(bytes.data() + 80);
-  if (facets > (bytes.size() - header_size) / facet_size) {
-    return source.error_at_byte(
-        80, "the header promises " + counted(facets, "facet") + ", but there is room for " +
-                std::to_string((bytes.size() - header_size) / facet_size) +
-                "; the file is cut short or no STL file" + std::string(export_again));
+  const Result<std::size_t> count = count_facets(source, reading);
+  if (!count) {
+    return count.error();
   }
+  const std::size_t facets = *count;
   if (facets == 0) {
     return no_faces(source);
   }
@@ -32,6 +61,7 @@ Result<PolygonMesh> read_binary(const Source& source) {
     return too_many_vertices(source, std::size_t{3} * facets);
   }
   PolygonMesh mesh;
+  bool has_attributes = false; // mostly a colour
   mesh.positions.reserve(std::size_t{3} * facets);
   for (std::size_t f = 0; f < facets; ++f) {
     const std::size_t facet = header_size + facet_size * f;
@@ -48,28 +78,27 @@ Result<PolygonMesh> read_binary(const Source& source) {
     }
     const Index first = static_cast<Index>(3 * f);
     mesh.add_face({first, first + 1, first + 2});
+    has_attributes |= load<std::uint16_t>(&bytes[facet + 48]) != 0;
+  }
+  if (has_attributes && reading.attributes != nullptr) {
+    reading.attributes->others.emplace_back("attribute bytes of facets");
   }
   return mesh;
 }
 
-// solid NAME
-//   facet normal X Y Z
-//     outer loop
-//       vertex X Y Z (three times)
-//     endloop
-//   endfacet
-// endsolid NAME
 class StlTextReader {
 public:
-  explicit StlTextReader(const Source& source) : source_(source), cursor_(source) {}
+  StlTextReader(const Source& source, Reading& reading)
+      : reading_(reading), source_(source), cursor_(source), walker_(cursor_) {}
 
   Result<PolygonMesh> read() {
-    while (cursor_.next_word_of_file()) {
-      if (const Status status = read_statement(); !status) {
+    for (StlStatement next = walker_.next(); next != StlStatement::end_of_file;
+         next = walker_.next()) {
+      if (const Status status = read_statement(next); !status) {
         return status.error();
       }
     }
-    if (in_solid_) {
+    if (in_solid_ || corners_ > 0) {
       return cursor_.error("the file ends without 'endsolid'; it is cut short" +
                            std::string(export_again));
     }
@@ -77,27 +106,38 @@ public:
   }
 
 private:
-  Status read_statement() {
-    const std::size_t begin = cursor_.offset();
-    const std::string keyword = stl_keyword(cursor_.word());
-    if (keyword == "vertex") {
-      return read_vertex();
-    }
-    if (keyword == "endfacet") {
-      return end_facet(begin);
-    }
-    if (keyword == "solid" || keyword == "endsolid") {
-      in_solid_ = keyword == "solid";
-    } else if (keyword == "endloop") {
-      return success(); // the facet may end on the same line
-    } else if (keyword == "facet") {
+  Status read_statement(StlStatement statement) {
+    switch (statement) {
+    case StlStatement::solid:
+      in_solid_ = true;
+      was_solid_ = true;
+      break;
+    case StlStatement::end_solid:
+      in_solid_ = false;
+      break;
+    case StlStatement::facet:
       // The normal follows from the corners, and some programs write nan.
       corners_ = 0;
-    } else if (keyword != "outer") {
-      return source_.error_in_line(begin, in_quotes(keyword) + " is no STL statement" +
-                                              std::string(export_again));
+      if (!was_solid_) {
+        reading_.notes.add(
+            "no_solid", [&] { return source_.place_in_line(walker_.begin()); },
+            "a facet before any line 'solid'; read as STL all the same");
+      }
+      was_solid_ = true;
+      break;
+    case StlStatement::vertex:
+      return read_vertex();
+    case StlStatement::end_facet:
+      return end_facet(walker_.begin());
+    case StlStatement::unknown:
+      cursor_.move_to(walker_.begin());
+      return source_.error_in_line(walker_.begin(), in_quotes(stl_keyword(cursor_.peek_word())) +
+                                                        " is no STL statement" +
+                                                        std::string(export_again));
+    case StlStatement::other:
+    case StlStatement::end_of_file:
+      break;
     }
-    cursor_.next_line();
     return success();
   }
 
@@ -107,10 +147,9 @@ private:
       cursor_.skip_blanks();
       const std::optional<double> value = cursor_.number();
       if (!value) {
-        return cursor_.error((cursor_.at_line_end()
-                                  ? "a vertex needs 3 coordinates"
-                                  : in_quotes(cursor_.peek_word()) + " is not a finite number") +
-                             std::string(export_again));
+        return cursor_.error(cursor_.at_line_end()
+                                 ? "a vertex needs 3 coordinates" + std::string(export_again)
+                                 : not_a_number(cursor_.peek_word()));
       }
       coordinate = *value;
     }
@@ -130,11 +169,14 @@ private:
     return success();
   }
 
+  Reading& reading_;
   Source source_;
   TextCursor cursor_;
+  StlWalker walker_;
   PolygonMesh mesh_;
   std::size_t corners_ = 0; // of the facet under way
   bool in_solid_ = false;
+  bool was_solid_ = false; // a solid has begun, or its absence has been told
 };
 
 } // namespace
@@ -149,13 +191,16 @@ std::string stl_keyword(std::string_view word) {
 
 bool is_stl_text(const Source& source) {
   TextCursor cursor(source);
-  return cursor.next_word_of_file() && stl_keyword(cursor.word()) == "solid" &&
-         source.bytes.substr(0, 1024).find('\0') == std::string_view::npos;
+  if (!cursor.next_word_of_file() ||
+      source.bytes.substr(0, 1024).find('\0') != std::string_view::npos) {
+    return false;
+  }
+  const std::string word = stl_keyword(cursor.word());
+  return word == "solid" || word == "facet";
 }
 
 Result<PolygonMesh> read_stl(const Source& source, Reading& reading) {
-  static_cast<void>(reading);
-  return is_stl_text(source) ? StlTextReader(source).read() : read_binary(source);
+  return is_stl_text(source) ? StlTextReader(source, reading).read() : read_binary(source, reading);
 }
 
 } // namespace cagewright

@@ -1,6 +1,8 @@
 #include "io/rewrite_obj.h"
 
 #include "io/number_text.h"
+#include "io/obj_words.h"
+#include "io/repeated_corners.h"
 #include "io/text_copy.h"
 #include "io/text_cursor.h"
 
@@ -27,6 +29,9 @@ public:
     for (std::size_t i = 0; i < normals.size(); ++i) {
       const Index line = stored.in_file[i];
       lines_.resize(std::max<std::size_t>(lines_.size(), line + std::size_t{1}));
+      if (stored.normals[i].isZero(0)) {
+        continue; // no direction, or not even numbers: the line stays as it is
+      }
       std::vector<Vec3>& variants = lines_[line];
       if (!variants.empty() && (variants[0] - normals[i]).cwiseAbs().maxCoeff() < equal_within) {
         continue; // nearly all
@@ -37,13 +42,12 @@ public:
         variants.push_back(normals[i]);
       }
     }
-    std::vector<std::int64_t> begins; // the number of the first variant of each line
     for (const std::vector<Vec3>& variants : lines_) {
-      begins.push_back(static_cast<std::int64_t>(begins.size()) + added_);
+      begins_.push_back(static_cast<std::int64_t>(begins_.size()) + added_);
       added_ += std::max<std::int64_t>(static_cast<std::int64_t>(variants.size()) - 1, 0);
     }
     for (std::size_t i = 0; i < normals.size(); ++i) {
-      numbers_.push_back(begins[stored.in_file[i]] + static_cast<std::int64_t>(in_line[i]) + 1);
+      numbers_.push_back(begins_[stored.in_file[i]] + static_cast<std::int64_t>(in_line[i]) + 1);
     }
   }
 
@@ -54,12 +58,22 @@ public:
 
   [[nodiscard]] bool renumbered() const { return added_ > 0; }
 
-  /// The number, from 1, that a corner refers to instead of `before`.
-  [[nodiscard]] std::int64_t number(std::size_t corner, std::int64_t before) const {
-    if (const Index normal = of_corner_[corner]; normal != FileNormals::none) {
-      return numbers_[normal];
+  /// The number, from 1, that a corner of the mesh refers to instead of `before`, where `seen`
+  /// normals stand before its face.
+  [[nodiscard]] std::int64_t number(std::size_t corner, std::int64_t before,
+                                    std::int64_t seen) const {
+    const Index normal = of_corner_[corner];
+    return normal != FileNormals::none ? numbers_[normal] : first_number(before, seen);
+  }
+
+  /// The same for a corner that is not part of the mesh.
+  [[nodiscard]] std::int64_t first_number(std::int64_t before, std::int64_t seen) const {
+    const std::int64_t line = before > 0 ? before - 1 : before + seen;
+    if (before == 0 || line < 0) {
+      return before - (before < 0 ? added_ : 0); // still out of range
     }
-    return before + (before > 0 ? added_ : before < 0 ? -added_ : 0); // still out of range
+    const auto known = static_cast<std::int64_t>(begins_.size());
+    return 1 + (line < known ? begins_[static_cast<std::size_t>(line)] : line + added_);
   }
 
 private:
@@ -85,6 +99,7 @@ private:
 
   std::span<const Index> of_corner_;
   std::vector<std::vector<Vec3>> lines_;
+  std::vector<std::int64_t> begins_; // the place of the first variant of each line
   std::vector<std::int64_t> numbers_;
   std::int64_t added_ = 0;
 };
@@ -115,15 +130,60 @@ void rewrite_obj_normal(TextCopy& copy, TextCursor& cursor, std::span<const Vec3
   copy.insert(cursor.offset(), more);
 }
 
-/// The corner "v/vt/vn" or "v//vn" at the cursor refers to the normal of its own.
-void rewrite_obj_corner(TextCopy& copy, TextCursor& cursor, const ObjNormalLines& lines,
-                        std::size_t corner) {
-  cursor.integer_prefix();
-  for (int i = 0; i < 2 && cursor.skip('/'); ++i) {
-    const std::size_t begin = cursor.offset();
-    const std::optional<std::int64_t> before = cursor.integer_prefix();
-    if (i == 1 && before) {
-      copy.replace(begin, cursor.offset(), lines.number(corner, *before));
+/// What stands before a face.
+struct Before {
+  std::int64_t vertices = 0;
+  std::int64_t normals = 0;
+};
+
+/// A corner of a face in the file.
+struct FileCorner {
+  std::int64_t vertex = 0; // from 0
+  std::int64_t normal = 0; // as it stands, 0: none
+  std::size_t begin = 0;   // of the normal's digits
+  std::size_t end = 0;
+  std::size_t place = 0; // in the face
+};
+
+std::vector<FileCorner> read_corners(TextCursor& cursor, const Before& before) {
+  std::vector<FileCorner> corners;
+  for (cursor.skip_blanks(); !cursor.at_line_end(); cursor.skip_blanks()) {
+    FileCorner& corner = corners.emplace_back();
+    corner.place = corners.size() - 1;
+    const std::int64_t vertex = cursor.integer_prefix().value_or(0);
+    corner.vertex = vertex > 0 ? vertex - 1 : vertex + before.vertices;
+    for (int i = 0; i < 2 && cursor.skip('/'); ++i) {
+      corner.begin = cursor.offset();
+      const std::int64_t index = cursor.integer_prefix().value_or(0);
+      corner.normal = i == 1 ? index : 0;
+      corner.end = cursor.offset();
+    }
+  }
+  return corners;
+}
+
+/// The corners of the face at the cursor refer to the normals of their own. `corner` counts those
+/// of the mesh, from which the reader has left some out.
+void rewrite_obj_face(TextCopy& copy, TextCursor& cursor, const ObjNormalLines& lines,
+                      const Before& before, std::size_t& corner) {
+  const std::vector<FileCorner> corners = read_corners(cursor, before);
+  std::vector<FileCorner> kept = corners;
+  if (kept.size() < 3) {
+    kept.clear();
+  } else {
+    drop_repeated_corners(kept, [](const FileCorner& c) { return c.vertex; });
+  }
+  std::size_t next = 0; // of the kept ones
+  for (const FileCorner& c : corners) {
+    const bool is_kept = next < kept.size() && kept[next].place == c.place;
+    if (c.normal != 0) {
+      copy.replace(c.begin, c.end,
+                   is_kept ? lines.number(corner, c.normal, before.normals)
+                           : lines.first_number(c.normal, before.normals));
+    }
+    if (is_kept) {
+      ++next;
+      ++corner;
     }
   }
 }
@@ -133,25 +193,23 @@ void rewrite_obj_corner(TextCopy& copy, TextCursor& cursor, const ObjNormalLines
 std::string rewrite_obj(const Source& source, std::span<const Vec3> positions,
                         std::span<const Vec3> normals, const FileNormals& stored) {
   TextCopy copy(source);
-  TextCursor cursor(source, TextCursor::Backslash::continues);
+  TextCursor cursor(source);
   const ObjNormalLines lines(normals, stored);
   const std::string_view line_end = line_end_of(source);
-  std::size_t vertex = 0;
-  std::size_t normal = 0;
+  Before before;
   std::size_t corner = 0;
-  for (; cursor.next_word_of_file(); cursor.next_line()) {
-    const std::string_view keyword = cursor.word();
+  while (cursor.next_word_of_file()) {
+    const std::string_view keyword = begin_obj_statement(cursor);
     if (keyword == "v") {
-      copy.replace_numbers(cursor, positions[vertex++]);
+      copy.replace_numbers(cursor, positions[static_cast<std::size_t>(before.vertices++)]);
     } else if (keyword == "vn") {
-      rewrite_obj_normal(copy, cursor, lines.variants(normal++), line_end);
-    } else if (lines.renumbered() && (keyword == "f" || keyword == "fo")) {
-      for (cursor.skip_blanks(); !cursor.at_line_end(); cursor.skip_blanks()) {
-        rewrite_obj_corner(copy, cursor, lines, corner++);
-      }
-    } else if (keyword == "o" || keyword == "g") {
-      cursor.rest_of_line(); // a name may end in a backslash
+      const auto line = static_cast<std::size_t>(before.normals++);
+      rewrite_obj_normal(copy, cursor, lines.variants(line), line_end);
+    } else if (lines.renumbered() && is_obj_face(keyword)) {
+      rewrite_obj_face(copy, cursor, lines, before, corner);
     }
+    cursor.next_line();
+    cursor.set_backslash(TextCursor::Backslash::is_text);
   }
   return std::move(copy).take();
 }

@@ -4,10 +4,12 @@
 #include "io/binary.h"
 #include "io/number_text.h"
 #include "io/off_header.h"
+#include "io/off_text.h"
 #include "io/ply_values.h"
 #include "io/readers.h"
 #include "io/rewrite_gltf.h"
 #include "io/rewrite_obj.h"
+#include "io/stl_text.h"
 #include "io/text_copy.h"
 #include "io/text_cursor.h"
 #include <cagewright/io/mesh_format.h>
@@ -17,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -41,16 +44,22 @@ bool has_three_numbers(TextCursor cursor) {
   return true;
 }
 
-/// From behind the first word of an OFF file to the first vertex.
-void skip_off_counts(TextCursor& cursor) {
-  for (int count = 0; count < 2; ++count) {
+/// From behind the first word of an OFF file to the first vertex. Returns the number of vertices.
+std::size_t skip_off_counts(TextCursor& cursor, const OffHeader& header) {
+  if (header.has_size) {
     cursor.next_word_of_file();
     cursor.integer();
   }
+  cursor.next_word_of_file();
+  const auto vertices = static_cast<std::size_t>(cursor.integer().value_or(0));
+  cursor.next_word_of_file();
+  cursor.integer();
+  skip_off_edges(cursor);
   cursor.skip_blanks();
   if (!cursor.at_line_end()) {
     cursor.integer(); // edges
   }
+  return vertices;
 }
 
 void skip_number(TextCursor& cursor) {
@@ -61,15 +70,26 @@ void skip_number(TextCursor& cursor) {
 std::string rewrite_off_text(const Source& source, TextCursor cursor, const OffHeader& header,
                              const Geometry& geometry) {
   TextCopy copy(source);
-  skip_off_counts(cursor);
+  const std::size_t vertices = skip_off_counts(cursor, header);
+  const OffLayout layout = off_layout(cursor, header, vertices);
   for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
     cursor.next_word_of_file();
     copy.replace_numbers(cursor, geometry.positions[v]);
+    std::size_t at = 3;
+    if (header.has_weight) { // the position is x / w, y / w, z / w
+      cursor.skip_blanks();
+      const std::size_t begin = cursor.offset();
+      cursor.any_number();
+      copy.replace(begin, cursor.offset(), std::int64_t{1});
+      ++at;
+    }
     if (!geometry.normals.empty()) {
-      if (header.has_weight) {
+      for (; at < layout.normal; ++at) {
         skip_number(cursor);
       }
-      copy.replace_numbers(cursor, geometry.normals[v]);
+      if (has_three_numbers(cursor)) {
+        copy.replace_numbers(cursor, geometry.normals[v]);
+      }
     }
     cursor.next_line();
   }
@@ -108,29 +128,23 @@ std::string rewrite_off_binary(const Source& source, std::size_t begin, const Of
 
 std::string rewrite_off(const Source& source, const Geometry& geometry) {
   TextCursor cursor(source);
-  cursor.next_word_of_file();
-  const std::optional<OffHeader> header = off_header(cursor.peek_word());
-  if (header) {
-    cursor.word();
-    cursor.skip_blanks();
-    if (cursor.peek_word() == "BINARY") {
-      cursor.next_line();
-      return rewrite_off_binary(source, cursor.offset(), *header, geometry);
-    }
+  const OffHeader header = take_off_header(cursor).value_or(OffHeader{});
+  cursor.skip_blanks();
+  if (cursor.peek_word() == "BINARY") {
+    cursor.next_line();
+    return rewrite_off_binary(source, cursor.offset(), header, geometry);
   }
-  return rewrite_off_text(source, cursor, header.value_or(OffHeader()), geometry);
+  return rewrite_off_text(source, cursor, header, geometry);
 }
 
 /// A normal for each vertex of an OFF file, if it has them.
 std::vector<Vec3> normals_of_off(const Source& source, std::size_t vertices) {
   TextCursor cursor(source);
-  cursor.next_word_of_file();
-  const std::optional<OffHeader> header = off_header(cursor.peek_word());
+  const std::optional<OffHeader> header = take_off_header(cursor);
   std::vector<Vec3> normals;
   if (!header || !header->has_normal) {
     return normals;
   }
-  cursor.word();
   cursor.skip_blanks();
   if (cursor.peek_word() == "BINARY") {
     cursor.next_line();
@@ -143,10 +157,11 @@ std::vector<Vec3> normals_of_off(const Source& source, std::size_t vertices) {
     }
     return normals;
   }
-  skip_off_counts(cursor);
+  skip_off_counts(cursor, *header);
+  const OffLayout layout = off_layout(cursor, *header, vertices);
   for (std::size_t v = 0; v < vertices; ++v) {
     cursor.next_word_of_file();
-    for (int number = 0; number < (header->has_weight ? 4 : 3); ++number) {
+    for (std::size_t at = 0; at < layout.normal; ++at) {
       skip_number(cursor);
     }
     if (!has_three_numbers(cursor)) {
@@ -179,21 +194,14 @@ std::string rewrite_stl_text(const Source& source, const Geometry& geometry) {
   TextCopy copy(source);
   TextCursor cursor(source);
   const std::span<const Vec3> p = geometry.positions;
+  StlWalker walker(cursor);
   std::size_t vertex = 0;
-  while (cursor.next_word_of_file()) {
-    const std::string keyword = stl_keyword(cursor.word());
-    if (keyword == "vertex") {
+  for (StlStatement next = walker.next(); next != StlStatement::end_of_file; next = walker.next()) {
+    if (next == StlStatement::vertex) {
       copy.replace_numbers(cursor, p[vertex++]);
-    } else if (keyword == "facet") {
-      cursor.skip_blanks();
-      const bool has_normal = stl_keyword(cursor.peek_word()) == "normal";
-      cursor.word();
-      if (has_normal && vertex + 3 <= p.size() && has_three_numbers(cursor)) {
-        copy.replace_numbers(cursor, facet_normal(p[vertex], p[vertex + 1], p[vertex + 2]));
-      }
-      cursor.next_line();
-    } else if (keyword != "endloop" && keyword != "endfacet") {
-      cursor.next_line();
+    } else if (next == StlStatement::facet && walker.has_normal() && vertex + 3 <= p.size() &&
+               has_three_numbers(cursor)) {
+      copy.replace_numbers(cursor, facet_normal(p[vertex], p[vertex + 1], p[vertex + 2]));
     }
   }
   return std::move(copy).take();
@@ -249,7 +257,7 @@ std::optional<double> value_of_axis(const Geometry& geometry, std::size_t vertex
 std::string rewrite_ply_text(const Source& source, const PlyHeader& header,
                              const Geometry& geometry) {
   TextCopy copy(source);
-  walk_ply_vertices(header, PlyText(source, header.end),
+  walk_ply_vertices(header, PlyText(source, header),
                     [&](std::size_t vertex, std::size_t axis, double, PlyType, std::size_t begin,
                         std::size_t end) {
                       if (const auto value = value_of_axis(geometry, vertex, axis)) {
@@ -303,7 +311,7 @@ std::vector<Vec3> normals_of_ply(const Source& source, std::size_t vertices) {
   };
   switch (header->encoding) {
   case PlyHeader::Encoding::text:
-    walk_ply_vertices(*header, PlyText(source, header->end), keep);
+    walk_ply_vertices(*header, PlyText(source, *header), keep);
     break;
   case PlyHeader::Encoding::little_endian:
     walk_ply_vertices(*header, PlyBinary(source, header->end, std::endian::little), keep);

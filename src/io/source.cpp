@@ -48,8 +48,12 @@ Error Source::error_in_line(std::size_t offset, std::string_view what, ErrorCode
   return {code, place_in_line(offset) + ": " + std::string(what)};
 }
 
+std::string Source::place_at_byte(std::size_t offset) const {
+  return one_line(name) + ": byte " + std::to_string(offset);
+}
+
 Error Source::error_at_byte(std::size_t offset, std::string_view what, ErrorCode code) const {
-  return {code, one_line(name) + ": byte " + std::to_string(offset) + ": " + std::string(what)};
+  return {code, place_at_byte(offset) + ": " + std::string(what)};
 }
 
 Error no_faces(const Source& source) {
@@ -62,6 +66,45 @@ Error too_many_vertices(const Source& source, std::size_t count) {
                           " vertices, more than the 4294967295 that can be counted; simplify the "
                           "model",
                       ErrorCode::unsupported);
+}
+
+bool has_thousands_separators(std::string_view digits) {
+  if (digits.starts_with('-')) {
+    digits.remove_prefix(1);
+  }
+  const std::size_t first = digits.find_first_not_of("0123456789");
+  if (first == 0 || first > 3) {
+    return false; // also where there is no other sign
+  }
+  const char separator = digits[first];
+  for (digits.remove_prefix(first); !digits.empty(); digits.remove_prefix(4)) {
+    if (digits.size() < 4 || digits[0] != separator ||
+        digits.substr(1, 3).find_first_not_of("0123456789") != digits.npos) {
+      return false;
+    }
+  }
+  return separator == ',' || separator == '.' || separator == '\'';
+}
+
+std::string not_a_number(std::string_view word) {
+  const auto commas = std::ranges::count(word, ',');
+  const bool is_numeric = word.find_first_not_of("0123456789+-.,eEdD") == word.npos &&
+                          word.find_first_of("0123456789") != word.npos;
+  if (commas == 0 || !is_numeric) {
+    return in_quotes(word) + " is not a finite number" + std::string(export_again);
+  }
+  if (commas == 1 && word.back() != ',' && word.find('.') == word.npos) {
+    return in_quotes(word) + " has a decimal comma; replace ',' by '.' in the file, or export with "
+                             "'.' as the decimal sign (exporting with the same setting gives the "
+                             "same file)";
+  }
+  if (word.find('.') != word.npos && word.find('.') > word.rfind(',') && word.back() != ',') {
+    return in_quotes(word) + " has a thousands separator; remove ',' from the file, or export "
+                             "without grouping of digits (exporting with the same setting gives "
+                             "the same file)";
+  }
+  return in_quotes(word) + " is not a finite number: numbers are separated by blanks; replace ',' "
+                           "by ' ' in the file";
 }
 
 std::string no_such_vertex(std::string_view face, std::string_view vertex, std::size_t count) {

@@ -36,7 +36,8 @@ struct Source {
   /// "name:line", for the line that holds `offset` in a text file.
   [[nodiscard]] std::string place_in_line(std::size_t offset) const;
 
-  /// "name: byte offset: what", for a binary file.
+  /// "name: byte offset" and "name: byte offset: what", for a binary file.
+  [[nodiscard]] std::string place_at_byte(std::size_t offset) const;
   [[nodiscard]] Error error_at_byte(std::size_t offset, std::string_view what,
                                     ErrorCode code = ErrorCode::malformed) const;
 };
@@ -50,6 +51,12 @@ Error too_many_vertices(const Source& source, std::size_t count);
 /// A corner names a vertex that is not there: "<face> refers to vertex <vertex>, but there are
 /// <count>; export the model again". The vertex is a text, because it may be beyond any integer.
 std::string no_such_vertex(std::string_view face, std::string_view vertex, std::size_t count);
+
+/// Whether the digits are grouped by signs between them: "1,000", "1.234.567", "1'000".
+bool has_thousands_separators(std::string_view digits);
+
+/// What a word is that should be a finite number, and what helps: "'0,5' has a decimal comma; ...".
+std::string not_a_number(std::string_view word);
 
 /// What helps against most damaged files; the end of many messages.
 inline constexpr std::string_view export_again = "; export the model again";

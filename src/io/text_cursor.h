@@ -5,6 +5,7 @@
 #include "io/source.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -15,29 +16,33 @@
 
 namespace cagewright {
 
-/// A position in a text. Words are separated by blanks; '#' at the start of a word, or right after
+/// A position in a text. Lines end with \n, \r\n or \r alone, in any mixture: files are put
+/// together from others. Words are separated by blanks; '#' at the start of a word, or right after
 /// a number, begins a comment that ends with the line (elsewhere it does not: some programs write
 /// nan as 1.#QNAN). No memory is allocated and every byte is looked at about once.
 class TextCursor {
 public:
-  /// What a backslash before a line end means: OBJ carries the line on.
+  /// What a backslash before a line end means: OBJ carries lists of numbers on.
   enum class Backslash { is_text, continues };
 
   explicit TextCursor(const Source& source, Backslash backslash = Backslash::is_text)
-      : source_(source), at_(source.bytes.data()), end_(at_ + source.bytes.size()),
-        line_end_(source.bytes.find('\n') != std::string_view::npos ? '\n' : '\r'),
-        continues_(backslash == Backslash::continues) {
+      : source_(source), at_(source.bytes.data()), end_(at_ + length_of_text(source.bytes)) {
+    set_backslash(backslash);
     if (source.bytes.starts_with("\xef\xbb\xbf")) {
       at_ += 3; // the mark that some editors put before UTF-8 text
     }
   }
+
+  /// From here on. In a name a backslash is text even at the line's end: the second byte of many
+  /// characters of Shift-JIS and GBK is one.
+  void set_backslash(Backslash backslash) { continues_ = backslash == Backslash::continues; }
 
   [[nodiscard]] bool at_end() const { return at_ == end_; }
   [[nodiscard]] std::size_t offset() const {
     return static_cast<std::size_t>(at_ - source_.bytes.data());
   }
   [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
-  void move_to(std::size_t offset) { at_ = source_.bytes.data() + offset; }
+  void move_to(std::size_t offset) { at_ = std::min(source_.bytes.data() + offset, end_); }
 
   void skip_blanks() {
     while (at_ != end_ && (is_blank(*at_) || (*at_ == '\\' && skip_continuation()))) {
@@ -46,15 +51,21 @@ public:
   }
 
   /// Whether no word is left on this line. Call after skip_blanks().
-  [[nodiscard]] bool at_line_end() const { return at_ == end_ || *at_ == line_end_ || *at_ == '#'; }
+  [[nodiscard]] bool at_line_end() const { return at_ == end_ || is_line_end(*at_) || *at_ == '#'; }
 
   /// To the start of the next line, past comments and continued lines.
   void next_line() {
     while (true) {
-      const auto* found = static_cast<const char*>(std::memchr(at_, line_end_, remaining()));
       const char* const begin = at_;
-      at_ = found != nullptr ? found + 1 : end_;
-      if (!continues_ || found == nullptr || !ends_in_backslash(begin, found)) {
+      while (at_ != end_ && !is_line_end(*at_)) {
+        ++at_;
+      }
+      const char* const line_end = at_;
+      if (at_ == end_) {
+        return;
+      }
+      pass_line_end();
+      if (!continues_ || !ends_in_backslash(begin, line_end)) {
         return;
       }
     }
@@ -74,7 +85,8 @@ public:
   /// The word here, without moving.
   [[nodiscard]] std::string_view peek_word() const {
     const char* to = at_;
-    while (to != end_ && !is_blank(*to) && *to != line_end_ && !(*to == '\\' && continues_at(to))) {
+    while (to != end_ && !is_blank(*to) && !is_line_end(*to) &&
+           !(*to == '\\' && continues_at(to))) {
       ++to;
     }
     return {at_, static_cast<std::size_t>(to - at_)};
@@ -89,8 +101,10 @@ public:
   /// What is left of the line, without blanks around it. Comments and backslashes count as text:
   /// this is for names.
   std::string_view rest_of_line() {
-    const auto* found = static_cast<const char*>(std::memchr(at_, line_end_, remaining()));
-    const char* to = found != nullptr ? found : end_;
+    const char* to = at_;
+    while (to != end_ && !is_line_end(*to)) {
+      ++to;
+    }
     const char* from = at_;
     at_ = to;
     while (from != to && is_blank(*from)) {
@@ -119,7 +133,7 @@ public:
       return std::nullopt;
     }
     if (!ends_number(to)) {
-      return std::nullopt;
+      return unusual_number();
     }
     at_ = to;
     return value;
@@ -174,18 +188,68 @@ public:
   /// Whether a number that ends here is all of its word.
   [[nodiscard]] bool at_number_end() const { return ends_number(at_); }
 
+  /// "name:line" of this position.
+  [[nodiscard]] std::string place() const { return source_.place_in_line(offset()); }
+
   /// The error "name:line: what" for the line of this position.
   [[nodiscard]] Error error(std::string_view what) const {
     return source_.error_in_line(offset(), what);
   }
 
 private:
-  [[nodiscard]] bool is_blank(char c) const {
-    return c == ' ' || c == '\t' || (c == '\r' && line_end_ != '\r') || c == '\v' || c == '\f';
+  static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+  }
+
+  static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+
+  /// Without the zeros and the Control-Z that some programs leave behind a text.
+  static std::size_t length_of_text(std::string_view bytes) {
+    const std::size_t last = bytes.find_last_not_of(std::string_view("\0\x1a", 2));
+    return last == bytes.npos ? bytes.size() : last + 1;
+  }
+
+  /// Past the line end here, which may be two bytes.
+  void pass_line_end() { at_ += *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n' ? 2 : 1; }
+
+  /// Numbers as Fortran (1.5D+00) and older C libraries of Windows (1.#QNAN, -1.#IND00, 1.#INF)
+  /// write them, which from_chars() does not know.
+  std::optional<double> unusual_number() {
+    std::string_view text = peek_word();
+    constexpr std::size_t longest = 64; // more digits than Fortran writes
+    const std::size_t mark = text.find_first_of("dD#");
+    if (mark == text.npos || mark == 0 || text.size() > longest) {
+      return std::nullopt;
+    }
+    if (text[mark] == '#') {
+      const std::string_view what = text.substr(mark + 1);
+      const bool is_infinite = what.starts_with("INF");
+      const bool is_mark = !what.empty() && std::ranges::all_of(what, [](char c) {
+        return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+      });
+      if (text[mark - 1] != '.' || !is_mark) {
+        return std::nullopt;
+      }
+      at_ += text.size();
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      return is_infinite ? (text[0] == '-' ? -infinity : infinity)
+                         : std::numeric_limits<double>::quiet_NaN();
+    }
+    std::array<char, longest> copy{};
+    text = text.substr(0, std::min(text.find('#'), text.size())); // a comment may follow at once
+    std::copy(text.begin(), text.end(), copy.begin());
+    copy[mark] = 'e';
+    TextCursor word(Source{source_.name, std::string_view(copy.data(), text.size())});
+    const std::optional<double> value = word.any_number();
+    if (value && word.at_end()) {
+      at_ += text.size();
+      return value;
+    }
+    return std::nullopt;
   }
 
   [[nodiscard]] bool ends_word(const char* p) const {
-    return p == end_ || is_blank(*p) || *p == line_end_ || (*p == '\\' && continues_at(p));
+    return p == end_ || is_blank(*p) || is_line_end(*p) || (*p == '\\' && continues_at(p));
   }
 
   /// The same right after a number, which a comment may follow at once.
@@ -200,7 +264,7 @@ private:
     }
     for (++p; p != end_ && is_blank(*p); ++p) {
     }
-    return p == end_ || *p == line_end_;
+    return p == end_ || is_line_end(*p);
   }
 
   /// From a backslash that carries the line on to the line's end.
@@ -208,7 +272,10 @@ private:
     if (!continues_at(at_)) {
       return false;
     }
-    while (at_ + 1 != end_ && *at_ != line_end_) {
+    while (at_ + 1 != end_ && !is_line_end(*at_)) {
+      ++at_;
+    }
+    if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') {
       ++at_;
     }
     return true;
@@ -216,7 +283,7 @@ private:
 
   /// Whether the line from `begin` to its end goes on with the next one. A comment does not: it may
   /// well end in the name of a Windows folder.
-  [[nodiscard]] bool ends_in_backslash(const char* begin, const char* line_end) const {
+  [[nodiscard]] static bool ends_in_backslash(const char* begin, const char* line_end) {
     const char* p = line_end;
     while (p != begin && is_blank(p[-1])) {
       --p;
@@ -246,8 +313,7 @@ private:
   const char* at_;
   const char* end_;
   const char* before_prefix_ = nullptr;
-  char line_end_;
-  bool continues_;
+  bool continues_ = false;
 };
 
 } // namespace cagewright

@@ -28,10 +28,41 @@ import tempfile
 POSE = "cage.obj posed.obj"
 
 # Reading and writing OBJ, STL, PLY and OFF.
+WHOLE = {"out": ["1280 triangles", "  closed"]}
+MOVED = {"out": ["642 of 642 vertices moved"]}
 READERS = [
-    ("F08", "info F08_trailing_slashes.obj", {"out": ["1280 triangles", "closed"]}),
+    ("F01", "info F01_end_loop.stl", WHOLE),
+    ("F01", f"deform F01_end_loop.stl {POSE} -o out/r.obj", {}),
+    ("F04", f"deform F04_rows_over_lines.ply {POSE} -o out/r.obj", MOVED),
+    ("F05", f"deform F05_meshlab_ncoff.off {POSE} -o out/x.off",
+     {**MOVED, "file": {"out/x.off": [" 64 255 127 255 ", " 191 255 127 255 "]}}),
+    ("F07", "info F07_repeated_corner.obj",
+     {"out": ["8 vertices, 6 faces: 6 quads", "  closed", "genus 0", "volume 2.4"], "err": ["a corner twice in a row"]}),
+    ("F08", "info F08_trailing_slashes.obj", WHOLE),
+    ("F11a", "info F11_usemtl_sjis.obj", WHOLE),
+    ("F23", "info F23_crlf_empty_lines.ply", WHOLE),
+    ("F26", "info F26_comma.obj", {"code": 2, "err": ["F26_comma.obj:1", "decimal comma", "replace ',' by '.'"]}),
+    ("F26", "info F26_comma.ply", {"code": 2, "err": ["F26_comma.ply:9", "decimal comma", "replace ',' by '.'"]}),
+    ("F29b", "info F29_keyhole.obj", {"out": ["  closed", "genus 1", "area 280"]}),
+    ("F30a", "info F30_off_with_colors.off", WHOLE),
+    ("F30b", f"deform F30_4off.off {POSE} -o out/r.obj", MOVED),
+    ("F30b", f"deform F30_4off.off {POSE} -o out/r.off", MOVED),
+    ("F31", "info F31_w.obj", WHOLE),
     ("F34", "info F34_lines_only.obj", {"code": 2, "err": ["F34_lines_only.obj", "has no faces"]}),
     ("F37", "info F37_points_only.ply", {"code": 2, "err": ["F37_points_only.ply", "has no faces"]}),
+    ("F44", "info F44_local_large.stl", {"out": ["1280 triangles"]}),
+    ("F84", f"deform F84_modelnet.off {POSE} -o out/r.obj", MOVED),
+    ("F84", f"deform F84_modelnet.off {POSE} -o out/r.off", MOVED),
+    ("F86", "info F86_thousands.obj", {"code": 2, "err": ["F86_thousands.obj:3444", "thousands separator"]}),
+    ("F90", "info F90_no_solid.stl", {**WHOLE, "err": ["before any line 'solid'"]}),
+    ("F91b", f"deform F91_ind.obj {POSE} -o out/x.obj", {**MOVED, "file": {"out/x.obj": ["vn 1.#QNAN0 0 0"]}}),
+    ("F97", "convert F82_dressed.obj out/x.ply",
+     {"err": ["x.ply: PLY cannot hold all: left out are", "materials"],
+      "file": {"out/x.ply": ["property double s", "property double nx", "red"]}}),
+    ("F97", "convert F75_attributes.ply out/x.obj",
+     {"err": ["'quality'", "'label'"], "file": {"out/x.obj": ["\nvt ", "\nvn ", "/1"]}}),
+    ("F97", f"deform F75_attributes.ply {POSE} -o out/x.obj",
+     {**MOVED, "err": ["'quality'", "'label'"], "file": {"out/x.obj": ["\nvt ", "\nvn "]}}),
 ]
 
 # glTF.

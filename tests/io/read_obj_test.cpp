@@ -34,7 +34,7 @@ TEST(ReadObj, KnowsEveryFormOfCorner) {
 
 TEST(ReadObj, KeepsPolygonsAndTheirOrder) {
   EXPECT_EQ(test::faces_of(read_obj(square + "f 4 3 2 1\nf 1 2 3\nf 1 2 3 4 1\n")),
-            (Faces{{3, 2, 1, 0}, {0, 1, 2}, {0, 1, 2, 3, 0}}));
+            (Faces{{3, 2, 1, 0}, {0, 1, 2}, {0, 1, 2, 3}}));
 }
 
 TEST(ReadObj, KeepsDirtyModelsAsTheyAre) {
@@ -106,8 +106,9 @@ TEST(ReadObj, ScalesColorsThatAreBytes) {
 TEST(ReadObj, ReadsObjectsAndGroups) {
   const PolygonMesh mesh = read_obj(square + "f 1 2 3\no left arm \nf 1 2 3\nf 1 2 4\ng hand\n"
                                              "o empty\ng left arm\nf 2 3 4\ng\nf 1 3 4\n");
-  EXPECT_EQ(mesh.group_names, (std::vector<std::string>{"default", "left arm"}));
-  EXPECT_EQ(mesh.face_groups, (std::vector<Index>{0, 1, 1, 1, 0}));
+  EXPECT_EQ(mesh.group_names,
+            (std::vector<std::string>{"default", "left arm", "left arm", "empty"}));
+  EXPECT_EQ(mesh.face_groups, (std::vector<Index>{0, 1, 1, 2, 3}));
   EXPECT_TRUE(read_obj(square + "f 1 2 3\n").group_names.empty());
 }
 
@@ -145,15 +146,17 @@ INSTANTIATE_TEST_SUITE_P(
         {"v 0 0 -inf\n", "file:1: '-inf' is not a finite number; export the model again"},
         {"v 0 0 1e999\n", "file:1: '1e999' is not a finite number; export the model again"},
         {"v 0 0 1.#QNAN\n", "file:1: '1.#QNAN' is not a finite number; export the model again"},
-        {"v 0 0 1,5\n", "file:1: '1,5' is not a finite number; export the model again"},
+        {"v 0 0 1,5\n",
+         "file:1: '1,5' has a decimal comma; replace ',' by '.' in the file, or export with '.' as "
+         "the decimal sign (exporting with the same setting gives the same file)"},
         {"v 0 0 0x10\n", "file:1: '0x10' is not a finite number; export the model again"},
         {"v 0 0 +-1\n", "file:1: '+-1' is not a finite number; export the model again"},
         {"v 0\n", "file:1: a vertex needs 3 coordinates, but this has 1; export the model again"},
-        {"v 0 0 0\nf 1 1\n",
-         "file:2: a face needs 3 corners, but this has 2; export the model again"},
-        {"v 0 0 0\nf\n", "file:2: a face needs 3 corners, but this has 0; export the model again"},
-        {"v 0 0 0\nf 1 1 0\n",
-         "file:2: face refers to vertex 0, but OBJ counts from 1; export the model again"},
+        {"v 0 0 0\nf 1 1\nf\n", "file: has no faces; a surface is needed: export the model as a "
+                                "mesh, not as points or curves"},
+        {"v 0 0 0\nf 1 1 0\n", "file:2: face refers to vertex 0, but OBJ counts from 1; add 1 to "
+                               "the corners of all faces "
+                               "where they are written"},
         {"v 0 0 0\nf 1 1 2\n",
          "file:2: face refers to vertex 2, but there is 1; export the model again"},
         {"v 0 0 0\nf -1 -1 -2\n", "file:2: face refers to vertex -2, but only 1 stand before "

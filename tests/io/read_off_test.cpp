@@ -126,9 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
          "file:6: face 0 needs 99999999 corners, but has 3; export the model again"},
         {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n",
          "file: has no faces; a surface is needed: export the model as a mesh, not as points "
-         "or curves"},
-        {"4OFF\n3 1 0\n", "file:1: points of other than 3 coordinates are not supported; "
-                          "export the model in 3 dimensions"}}));
+         "or curves"}}));
 
 } // namespace
 } // namespace cagewright

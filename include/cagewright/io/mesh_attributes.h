@@ -36,6 +36,8 @@ struct MeshAttributes {
   std::vector<std::array<float, 4>> face_colors; ///< F colours in [0, 1]
   std::vector<NamedValues> vertex_values;
   std::vector<NamedValues> face_values;
+  /// Of each of PolygonMesh::group_names the object that the group belongs to, or nothing (OBJ).
+  std::vector<std::string> group_objects;
   std::vector<std::string> comments; ///< lines of comments in the header (PLY, OBJ)
   /// What the file holds and no list above can, in words for a person: "lines", "skins".
   std::vector<std::string> others;

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cagewright/core/result.h>
+#include <cagewright/io/mesh_attributes.h>
 #include <cagewright/io/mesh_format.h>
+#include <cagewright/io/model_file.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace cagewright {
 
@@ -30,6 +33,25 @@ struct WriteOptions {
 /// not finite, which no reader would take.
 Status write_mesh(const PolygonMesh& mesh, const std::filesystem::path& path,
                   const WriteOptions& options = {});
+
+/// Writes a mesh with what else its file held, as far as the format can:
+///  - OBJ: texture points, normals, materials, objects and groups, comments.
+///  - PLY: texture points and normals where each vertex has one; texture points of corners as the
+///    list `texcoord` of faces; face colours; values of vertices and faces; comments.
+///  - OFF: texture points and normals where each vertex has one; face colours.
+/// \returns a note (code "lost") that names what the format cannot hold, or nothing
+/// Errors: as above.
+Result<std::vector<FileNote>> write_mesh(const PolygonMesh& mesh, const MeshAttributes& attributes,
+                                         const std::filesystem::path& path,
+                                         const WriteOptions& options = {});
+
+/// The bytes of such a file, and in words what it cannot hold.
+struct FormattedMesh {
+  std::string bytes;
+  std::vector<std::string> lost; ///< "texture coordinates", "materials"
+};
+Result<FormattedMesh> format_mesh(const PolygonMesh& mesh, const MeshAttributes& attributes,
+                                  MeshFormat format, const WriteOptions& options = {});
 
 /// The file's bytes alone. Errors: unsupported (glTF), cannot_write (a position is not finite).
 Result<std::string> format_mesh(const PolygonMesh& mesh, MeshFormat format,
