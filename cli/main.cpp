@@ -34,7 +34,7 @@ constexpr const char* exit_codes = R"(Exit codes:
   130  stopped by Ctrl-C or another signal)";
 
 // A signal handler can reach nothing but a global; the handler's thread asks the session to stop.
-std::stop_source* interrupt_target = nullptr;
+StopFlag* interrupt_target = nullptr;
 
 void interrupt(int signal) {
   if (interrupt_target != nullptr) {

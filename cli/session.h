@@ -12,7 +12,6 @@
 #include <atomic>
 #include <functional>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,7 +30,7 @@ enum ExitCode : int {
 /// One run of the program. A command's parser callback sets `run`; main() calls it.
 struct Session {
   std::function<int()> run;
-  std::stop_source stop;
+  StopFlag stop;
   int threads = 0;    ///< 0: all cores
   bool quiet = false; ///< no progress and no summary on the terminal
   Limits limits;
