@@ -13,14 +13,14 @@
 namespace cagewright {
 namespace {
 
-/// An ellipsoid, and a fine sphere round it to start from.
+/// An ellipsoid, and a fine cage round it to start from.
 struct Scene {
-  Scene() : model(make_icosphere(3)), start(make_icosphere(3)) {
+  Scene() : model(make_icosphere(2)), start(make_icosphere(2)) {
     for (Vec3& p : model.positions) {
       p = p.cwiseProduct(Vec3(1, 0.8, 0.6));
     }
     for (Vec3& p : start.positions) {
-      p *= 1.2;
+      p = p.cwiseProduct(Vec3(1.15, 0.95, 0.75));
     }
   }
   [[nodiscard]] static ImproveOptions options(int vertices) {
@@ -35,7 +35,7 @@ struct Scene {
 
 TEST(ImproveToGap, ProvesTheGapOfAValidCage) {
   const Scene scene;
-  constexpr double max_gap = 0.05;
+  constexpr double max_gap = 0.08;
   const Result<ImprovedToGap> made =
       improve_to_gap(scene.start, scene.model, Scene::options(0), max_gap);
   ASSERT_TRUE(made) << made.error().message;
@@ -63,7 +63,7 @@ TEST(ImproveToGap, CountsNoGapThatIsLargerThanAskedForAsKept) {
       return gap;
     };
     const Result<ImprovedToGap> made =
-        improve_to_gap(scene.start, scene.model, Scene::options(30), max_gap, measure);
+        improve_to_gap(scene.start, scene.model, Scene::options(16), max_gap, measure);
     ASSERT_TRUE(made) << made.error().message;
     EXPECT_FALSE(made->improved.report.reached) << over;
     EXPECT_FALSE(made->improved.report.why_not.empty());
@@ -96,7 +96,7 @@ TEST(ImproveToGap, StopsWhenAsked) {
   const Scene scene;
   std::stop_source source;
   source.request_stop();
-  const Result<ImprovedToGap> made = improve_to_gap(scene.start, scene.model, Scene::options(30),
+  const Result<ImprovedToGap> made = improve_to_gap(scene.start, scene.model, Scene::options(16),
                                                     0.05, Progress(source.get_token()));
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::cancelled);

@@ -12,14 +12,14 @@
 namespace cagewright {
 namespace {
 
-/// Quads round an ellipsoid, of triangles that are made of a fine sphere.
+/// Quads round an ellipsoid, of triangles that are made of a finer cage.
 struct Scene {
-  Scene() : model(make_icosphere(3)), start(make_icosphere(3)) {
+  Scene() : model(make_icosphere(2)), start(make_icosphere(2)) {
     for (Vec3& p : model.positions) {
       p = p.cwiseProduct(Vec3(1, 0.8, 0.6));
     }
     for (Vec3& p : start.positions) {
-      p *= 1.2;
+      p = p.cwiseProduct(Vec3(1.15, 0.95, 0.75));
     }
     options.improve.rounds = 0;
     options.quads = true;
@@ -51,35 +51,34 @@ struct Scene {
 
 TEST(QuadStage, GivesAValidCageWithinTheNumberOfFaces) {
   Scene scene;
-  scene.options.improve.faces = 60;
+  scene.options.improve.faces = 40;
   const Result<QuadStage> made = scene.run({});
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_TRUE(made->report.reached) << made->report.why_not;
-  EXPECT_LE(made->made.cage.face_count(), 60U);
+  EXPECT_LE(made->made.cage.face_count(), 40U);
   EXPECT_TRUE(validate_cage(made->made.cage, scene.model)->valid());
   EXPECT_FALSE(made->gap) << "none was asked for";
 }
 
 TEST(QuadStage, CountsNoGapThatIsLargerThanAskedForAsKept) {
-  for (const double over : {1.0001, 1.02}) {
-    Scene scene;
-    scene.options.improve.vertices = 40;
-    scene.options.max_gap = 0.05;
-    const Result<QuadStage> made = scene.run(scene.always(over * scene.options.max_gap));
-    ASSERT_TRUE(made) << made.error().message;
-    EXPECT_FALSE(made->report.reached) << over;
-    EXPECT_FALSE(made->report.why_not.empty());
-    ASSERT_TRUE(made->gap);
-    EXPECT_NEAR(*made->gap, over * scene.options.max_gap, 1e-12);
-    ASSERT_GT(scene.gaps_asked.size(), 1U);
-    EXPECT_LT(scene.gaps_asked.back(), scene.options.max_gap)
-        << "triangles that are nearer are tried";
-  }
+  constexpr double over = 1.02;
+  Scene scene;
+  scene.options.improve.vertices = 24;
+  scene.options.max_gap = 0.05;
+  const Result<QuadStage> made = scene.run(scene.always(over * scene.options.max_gap));
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_FALSE(made->report.reached);
+  EXPECT_FALSE(made->report.why_not.empty());
+  ASSERT_TRUE(made->gap);
+  EXPECT_NEAR(*made->gap, over * scene.options.max_gap, 1e-12);
+  ASSERT_GT(scene.gaps_asked.size(), 1U);
+  EXPECT_LT(scene.gaps_asked.back(), scene.options.max_gap)
+      << "triangles that are nearer are tried";
 }
 
 TEST(QuadStage, TakesTheFirstQuadsThatKeepTheGap) {
   Scene scene;
-  scene.options.improve.vertices = 40;
+  scene.options.improve.vertices = 24;
   scene.options.max_gap = 0.05;
   const Result<QuadStage> made = scene.run(scene.always(scene.options.max_gap));
   ASSERT_TRUE(made) << made.error().message;
@@ -89,7 +88,7 @@ TEST(QuadStage, TakesTheFirstQuadsThatKeepTheGap) {
 
 TEST(QuadStage, StopsWhenAsked) {
   Scene scene;
-  scene.options.improve.faces = 60;
+  scene.options.improve.faces = 40;
   std::stop_source source;
   source.request_stop();
   const Result<QuadStage> made = scene.run({}, Progress(source.get_token()));
