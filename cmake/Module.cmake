@@ -46,15 +46,24 @@ function(cagewright_add_module)
   endif()
 endfunction()
 
-# cagewright_add_tests(mesh FILES topology_test.cpp ... USES mesh ...): one program per folder of
-# tests, mesh_test, built from tests/mesh; each case is a test of its own for ctest.
+# cagewright_add_tests(mesh FILES topology_test.cpp ... USES mesh ... [SLOW "Suite.Case*" ...]): one
+# program per folder of tests, mesh_test, built from tests/mesh; each case is a test of its own for
+# ctest, with the label mesh. Cases whose names match SLOW have the label mesh-slow: the runs with
+# sanitizers leave them out.
 function(cagewright_add_tests name)
-  cmake_parse_arguments(PARSE_ARGV 1 T "" "" "FILES;USES;LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 T "" "" "FILES;USES;LINKS;SLOW")
   list(TRANSFORM T_USES PREPEND cagewright::)
   add_executable(${name}_test ${T_FILES})
   target_link_libraries(${name}_test PRIVATE
     cagewright_compiler cagewright_test_support ${T_USES} ${T_LINKS} GTest::gtest_main)
-  gtest_discover_tests(${name}_test TEST_PREFIX ${name}.
-    DISCOVERY_TIMEOUT 120 # the default of 5 s is short for a sanitizer build on a busy machine
-    PROPERTIES LABELS ${name} TIMEOUT 600)
+  # Limits are for cases that hang, and long enough for a sanitizer build on a busy machine.
+  set(common TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 600)
+  list(JOIN T_SLOW ":" slow)
+  if(slow)
+    gtest_discover_tests(${name}_test ${common} TEST_FILTER "${slow}" TEST_LIST ${name}_slow_cases
+      PROPERTIES LABELS ${name}-slow TIMEOUT 3600)
+    gtest_discover_tests(${name}_test ${common} TEST_FILTER "-${slow}" PROPERTIES LABELS ${name} TIMEOUT 1800)
+  else()
+    gtest_discover_tests(${name}_test ${common} PROPERTIES LABELS ${name} TIMEOUT 1800)
+  endif()
 endfunction()

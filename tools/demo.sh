@@ -10,7 +10,7 @@ mkdir -p "$out"
 
 model=$tools/../samples/creature.obj
 side=-35:12
-if [ -n "$models" ]; then
+if [ -s "$models/armadillo.off" ]; then
   model=$models/armadillo.off
   side=200:12 # it turns its back to the default side
 fi

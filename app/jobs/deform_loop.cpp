@@ -135,11 +135,13 @@ void DeformLoop::deliver() {
   }
 }
 
+void DeformLoop::wait() {
+  std::unique_lock lock(mutex_);
+  idle_.wait(lock, [this] { return !request_ && !working_; });
+}
+
 void DeformLoop::finish() {
-  {
-    std::unique_lock lock(mutex_);
-    idle_.wait(lock, [this] { return !request_ && !working_; });
-  }
+  wait();
   deliver();
 }
 

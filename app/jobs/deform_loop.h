@@ -27,6 +27,8 @@ public:
 
   /// Waits until the document shows the model for the cage as it is now.
   void finish();
+  /// Waits until all that was asked for is made; the document shows it once events are handled.
+  void wait();
 
   /// How long the last update of positions and normals took, in seconds.
   [[nodiscard]] double last_update_seconds() const { return last_update_seconds_; }

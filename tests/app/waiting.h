@@ -1,27 +1,18 @@
 /// \file
-/// Waiting for what happens beside the GUI thread.
+/// Waiting for states, never for times: what is waited for may take as long as a busy machine
+/// needs.
 #pragma once
 
-#include <QCoreApplication>
-#include <QElapsedTimer>
-#include <QEventLoop>
+#include <QtCore/qtestsupport_core.h>
 
 #include <functional>
 
 namespace cagewright::app::test {
 
-/// Handles events until the condition holds. \returns false if it never does
-inline bool wait_until(const std::function<bool()>& condition, int seconds = 120) {
-  QElapsedTimer clock;
-  clock.start();
-  while (!condition()) {
-    if (clock.elapsed() > seconds * 1000LL) {
-      return false;
-    }
-    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 50);
-    QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
-  }
-  return true;
+/// Handles events until the condition holds. \returns false if it never does; the limit is for
+/// tests that hang, and far from what any of them needs
+inline bool wait_until(const std::function<bool()>& condition, int seconds = 600) {
+  return QTest::qWaitFor(condition, seconds * 1000);
 }
 
 } // namespace cagewright::app::test

@@ -224,6 +224,39 @@ TEST(FacesCross, FindsWhatPassesThroughBesideASharedCorner) {
   EXPECT_TRUE(faces_cross(x, {0, 1, 2}, {0, 7, 8})); // an edge lies in the other face
 }
 
+// What two triangles have in common is convex, and holds the corner they share. If it holds more it
+// reaches the side opposite to it of one of them: the corner cut off, they still meet. Without the
+// corner they are triangles like others.
+TEST(FacesCross, BesideASharedCornerAgreesWithTrianglesThatLackIt) {
+  Random random(3);
+  const auto point = [&] {
+    return Vec3(static_cast<double>(random.below(5)) - 2, static_cast<double>(random.below(5)) - 2,
+                static_cast<double>(random.below(5)) - 2);
+  };
+  int crossing = 0;
+  int touching_at_the_corner = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const std::vector<Vec3> x = {Vec3::Zero(), point(), point(), point(), point()};
+    if (is_degenerate(x[0], x[1], x[2]) || is_degenerate(x[0], x[3], x[4])) {
+      continue;
+    }
+    constexpr double cut = 1.0 / 1024; // nearer to the corner than grid lines can meet a side
+    bool expected = false;
+    for (const int s : {0, 1}) {
+      for (const int t : {0, 1}) {
+        const Vec3 a[3] = {x[1] * (s == 0 ? 1 : cut), x[2], s == 0 ? x[1] * cut : x[2] * cut};
+        const Vec3 b[3] = {x[3] * (t == 0 ? 1 : cut), x[4], t == 0 ? x[3] * cut : x[4] * cut};
+        expected = expected || triangles_intersect(a, b);
+      }
+    }
+    ASSERT_EQ(faces_cross(x, {0, 1, 2}, {0, 3, 4}), expected) << "trial " << trial;
+    ASSERT_EQ(faces_cross(x, {2, 0, 1}, {3, 4, 0}), expected) << "trial " << trial;
+    ++(expected ? crossing : touching_at_the_corner);
+  }
+  EXPECT_GT(crossing, 1000);
+  EXPECT_GT(touching_at_the_corner, 1000);
+}
+
 TEST(FacesCross, CountsARepeatedFace) {
   const TriangleMesh cube = make_cube();
   const Triangle t = cube.triangles[0];

@@ -1,11 +1,13 @@
 #include "improve/guard.h"
 
 #include "core/random.h"
+#include "exact/predicates.h"
 #include "mesh/shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace cagewright {
@@ -58,6 +60,34 @@ TEST(Guard, MissesNoPartThatTheCageWouldJumpOver) {
   }
   EXPECT_FALSE(guard.loses_a_part(cage, cage.move(top, {0, 0, 3})));
   EXPECT_TRUE(guard.loses_a_part(cage, cage.move(top, {0, 0, -0.5})));
+}
+
+// The quick answer, by a plane that separates them, agrees with the exact one.
+TEST(FacesCross, AgreesWithTheExactPredicateWhateverTheFacesShare) {
+  Random random(11);
+  const auto coordinate = [&] { return static_cast<double>(random.below(5)) - 2; };
+  std::array<int, 2> count{};
+  for (int trial = 0; trial < 20000; ++trial) {
+    std::vector<Vec3> x(6);
+    for (Vec3& p : x) {
+      p = Vec3(coordinate(), coordinate(), coordinate());
+    }
+    const Triangle s = {0, 1, 2};
+    const Triangle t = trial % 3 == 0   ? Triangle{3, 4, 5}
+                       : trial % 3 == 1 ? Triangle{3, 1, 4}
+                                        : Triangle{2, 1, 3};
+    const Corners at_s{x[s[0]], x[s[1]], x[s[2]]};
+    const Corners at_t{x[t[0]], x[t[1]], x[t[2]]};
+    if (is_degenerate(at_s[0], at_s[1], at_s[2]) || is_degenerate(at_t[0], at_t[1], at_t[2])) {
+      continue;
+    }
+    const bool crossing = faces_cross(x, s, t);
+    ASSERT_EQ(faces_cross(s, at_s, t, at_t), crossing) << "trial " << trial;
+    ASSERT_EQ(faces_cross(t, at_t, s, at_s), crossing) << "trial " << trial;
+    ++count[crossing ? 1 : 0];
+  }
+  EXPECT_GT(count[0], 1000);
+  EXPECT_GT(count[1], 1000);
 }
 
 TEST(SolidAngle, OfAClosedSurfaceTellsInsideFromOutside) {

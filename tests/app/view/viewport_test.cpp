@@ -7,8 +7,11 @@
 #include "app/jobs/deform_loop.h"
 #include "core/random.h"
 #include "mesh/shapes.h"
+#include "mouse.h"
 #include "quads.h"
+#include "waiting.h"
 
+#include <QGuiApplication>
 #include <QSignalSpy>
 #include <QTest>
 #include <QWheelEvent>
@@ -59,7 +62,7 @@ protected:
   }
 
   void settle() {
-    QTest::qWait(10);
+    QGuiApplication::sync(); // what the display has still to say
     view.grabFramebuffer();
   }
 
@@ -78,14 +81,7 @@ protected:
 
   void drag(QPoint from, QPoint to, Qt::KeyboardModifiers modifiers = {},
             Qt::MouseButton button = Qt::LeftButton) {
-    QTest::mouseMove(&view, from);
-    QTest::mousePress(&view, button, modifiers, from);
-    for (int i = 1; i <= 6; ++i) {
-      const QPoint p = from + (to - from) * i / 6;
-      QMouseEvent move(QEvent::MouseMove, p, view.mapToGlobal(p), Qt::NoButton, button, modifiers);
-      QCoreApplication::sendEvent(&view, &move);
-    }
-    QTest::mouseRelease(&view, button, modifiers, to);
+    test::drag_mouse(view, from, to, modifiers, button);
   }
 
   /// The vertex nearest to the viewer.
@@ -163,9 +159,7 @@ TEST_F(ViewportWith, SelectsByABoxAndALasso) {
   const QPoint c = at_vertex(v);
   QTest::mousePress(&view, Qt::LeftButton, Qt::ControlModifier, c + QPoint(-12, -12));
   for (const QPoint& p : {QPoint(12, -12), QPoint(12, 12), QPoint(-12, 12)}) {
-    QMouseEvent move(QEvent::MouseMove, c + p, view.mapToGlobal(c + p), Qt::NoButton,
-                     Qt::LeftButton, Qt::ControlModifier);
-    QCoreApplication::sendEvent(&view, &move);
+    test::move_mouse(view, c + p, Qt::LeftButton, Qt::ControlModifier);
   }
   QTest::mouseRelease(&view, Qt::LeftButton, Qt::ControlModifier, c + QPoint(-12, 12));
   EXPECT_EQ(document.selection().vertices, std::vector<Index>{v});
@@ -223,8 +217,7 @@ TEST_F(ViewportWith, EscapeAndTheRightButtonPutEverythingBack) {
   const int steps = editor.undo_stack().count();
   for (const bool by_key : {true, false}) {
     key(Qt::Key_G);
-    QTest::mouseMove(&view, {100, 100});
-    QTest::qWait(5);
+    test::move_mouse(view, {100, 100});
     if (by_key) {
       key(Qt::Key_Escape);
     } else {
@@ -372,8 +365,7 @@ TEST_F(ViewportWith, MovesPartnersWhenSymmetric) {
   const Index v = front_vertex();
   QTest::mouseClick(&view, Qt::LeftButton, {}, at_vertex(v));
   key(Qt::Key_G);
-  QTest::mouseMove(&view, at_vertex(v) + QPoint(40, -30));
-  QTest::qWait(5);
+  test::move_mouse(view, at_vertex(v) + QPoint(40, -30));
   keep("symmetric-proportional");
   key(Qt::Key_Return);
   const std::vector<Vec3> now(document.cage_positions().begin(), document.cage_positions().end());
@@ -493,7 +485,7 @@ TEST_F(ViewportWith, DrawsALargeModelAsItIsOnceItRests) {
   view.set_coarse_while_moving(true);
   view.frame_all(); // moves the camera, though not elsewhere
   view.grabFramebuffer();
-  EXPECT_TRUE(QTest::qWaitFor([&] { return view.grabFramebuffer() == with_all; }, 20000));
+  EXPECT_TRUE(test::wait_until([&] { return view.grabFramebuffer() == with_all; }));
 }
 
 TEST_F(ViewportWith, TakesPicturesOfAnySizeWithoutTheGizmo) {

@@ -6,6 +6,7 @@
 
 #include "app/view/viewport.h"
 #include "mesh/shapes.h"
+#include "mouse.h"
 #include "waiting.h"
 #include <cagewright/io/read_mesh.h>
 #include <cagewright/io/write_mesh.h>
@@ -68,12 +69,24 @@ protected:
     settle();
   }
 
-  /// Shortcuts are those of the active window, and the last one that was may still be going.
+  /// Shortcuts are those of the active window. Which one that is the display says in its own time,
+  /// and may say so late, when another has just been closed: ask before every key, see press().
   void activate() {
     ASSERT_TRUE(wait_until([this] {
       window->activateWindow();
       return window->isActiveWindow();
     }));
+  }
+
+  /// Presses a key in the window; its shortcuts go before what the view does with the key.
+  void press(Qt::Key key, Qt::KeyboardModifiers modifiers = {}) {
+    activate();
+    QTest::keyClick(window.get(), key, modifiers);
+  }
+  void press_in_view(Qt::Key key, Qt::KeyboardModifiers modifiers = {}) {
+    activate();
+    view().setFocus();
+    QTest::keyClick(&view(), key, modifiers);
   }
 
   QString path(const char* name) const { return folder.filePath(name); }
@@ -101,8 +114,9 @@ protected:
     ASSERT_TRUE(wait_until([this] { return !session().jobs().busy(); }));
     settle();
   }
+  /// Until the display has said all, the model is where its cage wants it, and all is drawn.
   void settle() {
-    QTest::qWait(20);
+    QGuiApplication::sync();
     session().deform_loop().finish();
     view().grabFramebuffer();
   }
@@ -121,16 +135,16 @@ protected:
     QTimer timer;
     QObject::connect(&timer, &QTimer::timeout, [&] {
       auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
-      if (dialog == nullptr || typed) {
+      if (dialog == nullptr) {
         return;
       }
       typed = true;
-      // As a whole: what completes names letter by letter would answer Return itself.
+      // As a whole: what completes names letter by letter would answer Return itself. Again, until
+      // the dialog is gone: its button may not be ready yet.
       dialog->findChild<QLineEdit*>("fileNameEdit")->setText(file);
       QTest::mouseClick(dialog->findChild<QDialogButtonBox*>()->buttons().first(), Qt::LeftButton);
     });
     timer.start(30);
-    activate();
     act();
     EXPECT_TRUE(typed) << "no file was asked for";
   }
@@ -147,8 +161,7 @@ protected:
   }
 
   void open_model() {
-    with_file(path("model.obj"),
-              [this] { QTest::keyClick(window.get(), Qt::Key_O, Qt::ControlModifier); });
+    with_file(path("model.obj"), [this] { press(Qt::Key_O, Qt::ControlModifier); });
     wait_for_job();
     ASSERT_TRUE(document().has_model());
   }
@@ -178,17 +191,7 @@ protected:
                                                }) -
                               p.begin());
   }
-  void drag(QPoint from, QPoint to) {
-    QTest::mouseMove(&view(), from);
-    QTest::mousePress(&view(), Qt::LeftButton, {}, from);
-    for (int i = 1; i <= 6; ++i) {
-      const QPoint p = from + (to - from) * i / 6;
-      QMouseEvent move(QEvent::MouseMove, p, view().mapToGlobal(p), Qt::NoButton, Qt::LeftButton,
-                       {});
-      QCoreApplication::sendEvent(&view(), &move);
-    }
-    QTest::mouseRelease(&view(), Qt::LeftButton, {}, to);
-  }
+  void drag(QPoint from, QPoint to) { test::drag_mouse(view(), from, to); }
   /// Selects the vertex by a click and drags the gizmo's arrow along x.
   void drag_gizmo(int pixels) {
     const Index v = front_vertex();

@@ -39,7 +39,7 @@ TEST_F(Window, LeadsFromAnEmptyWindowToAnExportedModel) {
   const std::vector<Vec3> refined = cage();
   drag_gizmo(30);
   EXPECT_GT(greatest_distance(cage(), refined), 0) << "the cage itself is refined";
-  QTest::keyClick(window.get(), Qt::Key_Z, Qt::ControlModifier);
+  press(Qt::Key_Z, Qt::ControlModifier);
   EXPECT_EQ(cage(), refined);
 
   bind();
@@ -48,13 +48,13 @@ TEST_F(Window, LeadsFromAnEmptyWindowToAnExportedModel) {
   EXPECT_GT(greatest_distance(shown(), rest), 1e-3) << "the model follows";
   EXPECT_TRUE(guide->text().contains("Export"));
   const std::vector<Vec3> posed = shown();
-  QTest::keyClick(window.get(), Qt::Key_Z, Qt::ControlModifier);
+  press(Qt::Key_Z, Qt::ControlModifier);
   EXPECT_LT(greatest_distance(shown(), rest), 1e-9);
-  QTest::keyClick(window.get(), Qt::Key_Y, Qt::ControlModifier);
+  press(Qt::Key_Y, Qt::ControlModifier);
   EXPECT_LT(greatest_distance(shown(), posed), 1e-9);
   keep("posed");
 
-  QTest::keyClick(window.get(), Qt::Key_K, Qt::ControlModifier);
+  press(Qt::Key_K, Qt::ControlModifier);
   EXPECT_EQ(document().state().poses.size(), 1U);
   with_file(path("out.obj"), [this] { click("guide_button"); });
   wait_for_job();
@@ -62,15 +62,13 @@ TEST_F(Window, LeadsFromAnEmptyWindowToAnExportedModel) {
   ASSERT_TRUE(written) << written.error().message;
   EXPECT_LT(greatest_distance(written->positions, posed), 1e-5);
 
-  with_file(path("work.cagewright"),
-            [this] { QTest::keyClick(window.get(), Qt::Key_S, Qt::ControlModifier); });
+  with_file(path("work.cagewright"), [this] { press(Qt::Key_S, Qt::ControlModifier); });
   EXPECT_FALSE(window->isWindowModified());
   const std::vector<Vec3> pose = cage();
   window->close();
   window.reset();
   make_window();
-  with_file(path("work.cagewright"),
-            [this] { QTest::keyClick(window.get(), Qt::Key_O, Qt::ControlModifier); });
+  with_file(path("work.cagewright"), [this] { press(Qt::Key_O, Qt::ControlModifier); });
   wait_for_job();
   EXPECT_EQ(document().mode(), Mode::deform);
   EXPECT_EQ(cage(), pose);
@@ -125,9 +123,8 @@ TEST_F(Window, ShowsHowTheModelWasSplit) {
   ASSERT_TRUE(document().stages());
   auto* depth = find<QSlider>("shown_depth");
   EXPECT_GT(depth->maximum(), 0);
-  view().setFocus();
   const int deepest = depth->value();
-  QTest::keyClick(&view(), Qt::Key_BracketLeft);
+  press_in_view(Qt::Key_BracketLeft);
   EXPECT_EQ(document().layers().depth, deepest - 1);
   find<QDockWidget>("dock_sections")->raise();
   auto* tree = window->findChild<QTreeWidget*>("boxes_tree");
@@ -257,7 +254,7 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
       QTest::keyClick(&view(), keys[pick(keys.size())]);
       break;
     case 5:
-      QTest::keyClick(window.get(), pick(3) == 0 ? Qt::Key_Y : Qt::Key_Z, Qt::ControlModifier);
+      press(pick(3) == 0 ? Qt::Key_Y : Qt::Key_Z, Qt::ControlModifier);
       break;
     case 6:
       actions[static_cast<qsizetype>(pick(static_cast<std::size_t>(actions.size())))]->trigger();
@@ -281,7 +278,7 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
     }
   }
   wait_for_job();
-  QTest::keyClick(&view(), Qt::Key_Escape);
+  press_in_view(Qt::Key_Escape);
   QUndoStack& stack = session().editor().undo_stack();
   while (stack.canUndo()) {
     stack.undo();
