@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <stop_token>
 #include <string>
 
 namespace cagewright {
@@ -94,10 +93,10 @@ TEST(ImproveToGap, RefusesAGapBelowTheClearance) {
 
 TEST(ImproveToGap, StopsWhenAsked) {
   const Scene scene;
-  std::stop_source source;
+  StopFlag source;
   source.request_stop();
   const Result<ImprovedToGap> made = improve_to_gap(scene.start, scene.model, Scene::options(16),
-                                                    0.05, Progress(source.get_token()));
+                                                    0.05, Progress(source));
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::cancelled);
 }

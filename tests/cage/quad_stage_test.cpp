@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <stop_token>
 #include <vector>
 
 namespace cagewright {
@@ -89,9 +88,9 @@ TEST(QuadStage, TakesTheFirstQuadsThatKeepTheGap) {
 TEST(QuadStage, StopsWhenAsked) {
   Scene scene;
   scene.options.improve.faces = 40;
-  std::stop_source source;
+  StopFlag source;
   source.request_stop();
-  const Result<QuadStage> made = scene.run({}, Progress(source.get_token()));
+  const Result<QuadStage> made = scene.run({}, Progress(source));
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::cancelled);
 }

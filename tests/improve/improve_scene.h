@@ -82,9 +82,9 @@ private:
 };
 
 /// Everything that is asked for is cancelled.
-inline Progress stopped(std::stop_source& source) {
+inline Progress stopped(StopFlag& source) {
   source.request_stop();
-  return Progress(source.get_token());
+  return Progress(source);
 }
 
 } // namespace cagewright::test

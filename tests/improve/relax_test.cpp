@@ -68,7 +68,7 @@ TEST(Relax, LosesNoPartOfTheModelHoweverLongItsSteps) {
 TEST(Relax, StopsWhenAsked) {
   ImproveScene scene;
   const TriangleMesh before = scene.cage.mesh.compact();
-  std::stop_source source;
+  StopFlag source;
   relax(scene.cage, scene.guard, scene.objective, {}, test::stopped(source));
   EXPECT_EQ(scene.cage.mesh.compact().positions, before.positions);
 }

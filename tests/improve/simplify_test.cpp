@@ -45,7 +45,7 @@ TEST(Simplify, KeepsPartsThatAreSmallInside) {
 
 TEST(Simplify, StopsWhenAskedWithAValidCage) {
   ImproveScene scene;
-  std::stop_source source;
+  StopFlag source;
   EXPECT_FALSE(simplify(scene.cage, scene.guard, scene.objective, {}, test::stopped(source)));
   scene.expect_sound();
 }

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <stop_token>
 #include <vector>
 
 namespace cagewright {
@@ -59,9 +58,9 @@ TEST(RelaxQuads, KeepsTheFaces) {
 TEST(RelaxQuads, StopsWhenAsked) {
   QuadScene scene;
   const std::vector<Vec3> before = scene.cage.positions();
-  std::stop_source source;
+  StopFlag source;
   source.request_stop();
-  relax_quads(scene.cage, scene.guard, scene.objective, {}, Progress(source.get_token()));
+  relax_quads(scene.cage, scene.guard, scene.objective, {}, Progress(source));
   EXPECT_EQ(scene.cage.positions(), before);
 }
 

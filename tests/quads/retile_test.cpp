@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <stop_token>
 #include <vector>
 
 namespace cagewright {
@@ -59,9 +58,9 @@ TEST(Retile, KeepsTheBordersOfParts) {
 
 TEST(Retile, StopsWhenAskedWithAValidCage) {
   QuadScene scene;
-  std::stop_source source;
+  StopFlag source;
   source.request_stop();
-  retile(scene.cage, scene.guard, scene.field, {}, Progress(source.get_token()));
+  retile(scene.cage, scene.guard, scene.field, {}, Progress(source));
   scene.expect_sound();
 }
 
