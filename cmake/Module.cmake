@@ -1,3 +1,11 @@
+find_package(Eigen3 3.4 REQUIRED)
+find_package(TBB REQUIRED)
+file(WRITE ${PROJECT_BINARY_DIR}/empty.cpp "")
+add_library(cagewright_precompiled OBJECT ${PROJECT_BINARY_DIR}/empty.cpp)
+target_link_libraries(cagewright_precompiled PRIVATE cagewright_compiler Eigen3::Eigen TBB::tbb)
+target_precompile_headers(cagewright_precompiled PRIVATE ${CAGEWRIGHT_PRECOMPILED})
+set_target_properties(cagewright_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+
 # cagewright_add_module(NAME mesh HEADERS ... SOURCES ... USES core ... [LINKS Eigen3::Eigen]
 #                       [PRIVATE_LINKS ...] [PACKAGES "Eigen3 3.4" ...] [PKGCONFIG eigen3 ...])
 #
@@ -31,6 +39,7 @@ function(cagewright_add_module)
   target_link_libraries(cagewright_${M_NAME} ${scope} ${uses} ${M_LINKS})
   if(M_SOURCES)
     target_link_libraries(cagewright_${M_NAME} PRIVATE $<BUILD_INTERFACE:cagewright_compiler> ${M_PRIVATE_LINKS})
+    target_precompile_headers(cagewright_${M_NAME} REUSE_FROM cagewright_precompiled)
   endif()
   # An export of its own: who asks for one component meets no dependency of another (see Install.cmake).
   set_property(GLOBAL APPEND PROPERTY CAGEWRIGHT_MODULES ${M_NAME})
@@ -56,6 +65,7 @@ function(cagewright_add_tests name)
   add_executable(${name}_test ${T_FILES})
   target_link_libraries(${name}_test PRIVATE
     cagewright_compiler cagewright_test_support ${T_USES} ${T_LINKS} GTest::gtest_main)
+  target_precompile_headers(${name}_test REUSE_FROM cagewright_test_precompiled)
   # Limits are for cases that hang, and long enough for a sanitizer build on a busy machine.
   set(common TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 600)
   list(JOIN T_SLOW ":" slow)
