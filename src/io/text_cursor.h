@@ -197,9 +197,7 @@ public:
   }
 
 private:
-  static bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-  }
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
   static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
