@@ -15,7 +15,7 @@ using namespace cagewright;
 using namespace cagewright::cli;
 
 // A signal handler can reach nothing but a global; the handler's thread asks the session to stop.
-std::stop_source* interrupt_target = nullptr;
+StopFlag* interrupt_target = nullptr;
 
 void interrupt(int /*signal*/) {
   if (interrupt_target != nullptr) {

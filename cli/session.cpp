@@ -9,18 +9,17 @@ namespace cagewright::cli {
 
 Progress Session::progress() const {
   if (quiet || isatty(STDERR_FILENO) == 0) {
-    return Progress(stop.get_token());
+    return Progress(stop);
   }
-  return Progress(
-      stop.get_token(), [last = std::make_shared<int>(-1)](double fraction, std::string_view step) {
-        const int percent = static_cast<int>(fraction * 100);
-        if (percent != *last) {
-          *last = percent;
-          std::fprintf(stderr, "\r\033[K%3d %%  %.*s%s", percent, static_cast<int>(step.size()),
-                       step.data(), percent >= 100 ? "\r\033[K" : "");
-          std::fflush(stderr);
-        }
-      });
+  return Progress(stop, [last = std::make_shared<int>(-1)](double fraction, std::string_view step) {
+    const int percent = static_cast<int>(fraction * 100);
+    if (percent != *last) {
+      *last = percent;
+      std::fprintf(stderr, "\r\033[K%3d %%  %.*s%s", percent, static_cast<int>(step.size()),
+                   step.data(), percent >= 100 ? "\r\033[K" : "");
+      std::fflush(stderr);
+    }
+  });
 }
 
 int fail(const Error& error) {

@@ -8,7 +8,6 @@
 #include <CLI/CLI.hpp>
 
 #include <functional>
-#include <stop_token>
 #include <string>
 
 namespace cagewright::cli {
@@ -24,7 +23,7 @@ enum ExitCode : int {
 /// One run of the program. A command's parser callback sets `run`; main() calls it.
 struct Session {
   std::function<int()> run;
-  std::stop_source stop;
+  StopFlag stop;
   int threads = 0;    ///< 0: all cores
   bool quiet = false; ///< no progress and no summary on the terminal
 

@@ -15,6 +15,8 @@ RULES = [
     (MATHS, "differs in the last places from machine to machine; core/maths.h has one that does not",
      # Pictures may; and coefficients summed in long double are rounded to double afterwards.
      ("src/render/", "src/coordinates/mean_value.cpp")),
+    (r"\bstd::(atomic_ref|stop_token|stop_source|stop_callback|jthread)\b",
+     "is missing from clang's libc++; see StopFlag in core/progress.h", ()),
     (r"\bEigen::AngleAxis", "calls the C library's sine; see core/rotation.h", ()),
 ]
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <new>
+#include <stop_token>
 #include <utility>
 
 namespace cagewright::app {
@@ -38,8 +39,10 @@ void Job::start(Work work) {
     // A bar that goes back looks like a mistake: it waits instead.
     auto last = std::chrono::steady_clock::time_point();
     double greatest = 0;
+    const StopFlag flag;
+    const std::stop_callback link(stop, [flag] { flag.request_stop(); });
     const Progress progress(
-        stop, [this, last, greatest](double fraction, std::string_view step) mutable {
+        flag, [this, last, greatest](double fraction, std::string_view step) mutable {
           fraction = greatest = std::max(greatest, fraction);
           const auto now = std::chrono::steady_clock::now();
           if (now - last < std::chrono::milliseconds(33) && fraction < 1) {

@@ -219,8 +219,8 @@ TEST(BoxCage, ReportsProgressThatNeverFalls) {
 
 TEST(BoxCage, StopsWhereverItIsAskedTo) {
   for (const double when : {0.0, 0.2, 0.34, 0.5}) {
-    std::stop_source stop;
-    const Progress progress(stop.get_token(), [&](double fraction, std::string_view) {
+    StopFlag stop;
+    const Progress progress(stop, [&](double fraction, std::string_view) {
       if (fraction >= when) {
         stop.request_stop();
       }

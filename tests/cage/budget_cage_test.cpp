@@ -125,8 +125,8 @@ TEST(BudgetCage, StopsWhereverItIsAskedTo) {
   const TriangleMesh one_piece = make_torus(0.25, 16, 8);
   for (const double gap : {0.0, 0.12}) {
     for (const double when : {0.0, 0.05, 0.2, 0.5, 0.9}) {
-      std::stop_source stop;
-      const Progress progress(stop.get_token(), [&](double fraction, std::string_view) {
+      StopFlag stop;
+      const Progress progress(stop, [&](double fraction, std::string_view) {
         if (fraction >= when) {
           stop.request_stop();
         }

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <stop_token>
 #include <vector>
 
 namespace cagewright {
@@ -239,11 +238,10 @@ TEST(RegisterBoxes, RejectsAVoxelOutsideTheGrid) {
 
 TEST(RegisterBoxes, StopsWhenAskedTo) {
   const Scene scene = chain({{-3, 0, 0}, {0, 0, 0}, {3, 0, 0}}, 1);
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
-  EXPECT_EQ(
-      register_boxes(scene.grid(), scene.contents(), {}, Progress(stop.get_token())).error().code,
-      ErrorCode::cancelled);
+  EXPECT_EQ(register_boxes(scene.grid(), scene.contents(), {}, Progress(stop)).error().code,
+            ErrorCode::cancelled);
 }
 
 TEST(KeepApart, MakesTheBoxesAsTheyAre) {

@@ -12,7 +12,6 @@
 #include <numbers>
 #include <random>
 #include <set>
-#include <stop_token>
 #include <vector>
 
 namespace cagewright {
@@ -308,10 +307,10 @@ TEST(Unite, RejectsWhatIsNoSolid) {
 }
 
 TEST(Unite, StopsWhenAskedTo) {
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
   const Solids solids(2, box(Vec3::Zero(), Vec3::Ones()));
-  EXPECT_EQ(unite(solids, {}, Progress(stop.get_token())).error().code, ErrorCode::cancelled);
+  EXPECT_EQ(unite(solids, {}, Progress(stop)).error().code, ErrorCode::cancelled);
 }
 
 } // namespace

@@ -485,9 +485,9 @@ TEST(MeanValueBinding, StoresTheNearestFloats) {
 }
 
 TEST(MeanValueBinding, StopsWhenAsked) {
-  std::stop_source stop;
+  StopFlag stop;
   std::size_t reports = 0;
-  const Progress progress(stop.get_token(), [&](double, std::string_view) {
+  const Progress progress(stop, [&](double, std::string_view) {
     ++reports;
     stop.request_stop();
   });

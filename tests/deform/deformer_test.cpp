@@ -232,10 +232,9 @@ TEST(Deformer, RefusesWeightsOfAnotherModel) {
 }
 
 TEST(Deformer, StopsBindingWhenAsked) {
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
-  const Result<Deformer> deformer =
-      Deformer::bind(model(), cage(), {}, {}, Progress(stop.get_token()));
+  const Result<Deformer> deformer = Deformer::bind(model(), cage(), {}, {}, Progress(stop));
   ASSERT_FALSE(deformer);
   EXPECT_EQ(deformer.error().code, ErrorCode::cancelled);
 }
@@ -280,11 +279,11 @@ TEST(CompactWeights, AreRoundedBlockByBlockToHalfAStep) {
 }
 
 TEST(CompactWeights, StopWhenAsked) {
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
   const Result<MeanValueSolver> solver = MeanValueSolver::create(cage());
   ASSERT_TRUE(solver);
-  const auto compact = solve_compact(*solver, model().positions, Progress(stop.get_token()));
+  const auto compact = solve_compact(*solver, model().positions, Progress(stop));
   ASSERT_FALSE(compact);
   EXPECT_EQ(compact.error().code, ErrorCode::cancelled);
 }

@@ -162,10 +162,9 @@ TEST_F(WeightsFile, SaysWhatItIsNot) {
 }
 
 TEST_F(WeightsFile, LeavesNothingBehindWhenCancelled) {
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
-  const Result<BoundCounts> counts =
-      bind_to_file(solver(), points_, cage_, path_, Progress(stop.get_token()));
+  const Result<BoundCounts> counts = bind_to_file(solver(), points_, cage_, path_, Progress(stop));
   ASSERT_FALSE(counts);
   EXPECT_EQ(counts.error().code, ErrorCode::cancelled);
   EXPECT_TRUE(std::filesystem::is_empty(directory_));

@@ -114,10 +114,9 @@ TEST(Envelope, RefusesOptionsOutOfRange) {
 }
 
 TEST(Envelope, StopsWhenAsked) {
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
-  EXPECT_EQ(envelope(make_cube(), {}, Progress(stop.get_token())).error().code,
-            ErrorCode::cancelled);
+  EXPECT_EQ(envelope(make_cube(), {}, Progress(stop)).error().code, ErrorCode::cancelled);
 }
 
 } // namespace

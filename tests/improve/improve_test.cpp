@@ -230,12 +230,11 @@ TEST(Improve, RefusesWhatItCannotWorkWith) {
 }
 
 TEST(Improve, StopsWhenAsked) {
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
   const TriangleMesh sphere = make_icosphere(2);
   const Result<Envelope> start = envelope(sphere);
-  EXPECT_EQ(improve(start->mesh, sphere, {}, Progress(stop.get_token())).error().code,
-            ErrorCode::cancelled);
+  EXPECT_EQ(improve(start->mesh, sphere, {}, Progress(stop)).error().code, ErrorCode::cancelled);
 }
 
 } // namespace

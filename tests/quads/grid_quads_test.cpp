@@ -12,7 +12,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <stop_token>
 
 namespace cagewright {
 namespace {
@@ -161,9 +160,9 @@ TEST(GridQuads, AreTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(GridQuads, CanBeCancelled) {
-  std::stop_source source;
+  StopFlag source;
   source.request_stop();
-  const auto made = make_grid_quads(figure(), {}, Progress(source.get_token()));
+  const auto made = make_grid_quads(figure(), {}, Progress(source));
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::cancelled);
 }

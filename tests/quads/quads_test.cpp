@@ -15,7 +15,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <stop_token>
 
 namespace cagewright {
 namespace {
@@ -299,9 +298,9 @@ TEST(Quads, OfNothingOrOfAnOpenCageAreRefused) {
 
 TEST(Quads, CanBeCancelled) {
   const TriangleMesh model = make_icosphere(1);
-  std::stop_source source;
+  StopFlag source;
   source.request_stop();
-  const Progress progress(source.get_token());
+  const Progress progress(source);
   const auto made = make_quads(moved(model, 1.5, {0, 0, 0}), model, {}, progress);
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::cancelled);

@@ -121,10 +121,9 @@ TEST_P(BoxTreeBy, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST_P(BoxTreeBy, StopsWhenAsked) {
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
-  const Result<BoxTree> tree =
-      build_box_tree(table(), {.rule = GetParam()}, Progress(stop.get_token()));
+  const Result<BoxTree> tree = build_box_tree(table(), {.rule = GetParam()}, Progress(stop));
   ASSERT_FALSE(tree);
   EXPECT_EQ(tree.error().code, ErrorCode::cancelled);
 }

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <stop_token>
 #include <string>
 
 namespace cagewright {
@@ -462,9 +461,9 @@ TEST(ValidateCage, StopsAtTheFirstFailingCheckWhenAsked) {
 }
 
 TEST(ValidateCage, CanBeCancelled) {
-  std::stop_source stop;
+  StopFlag stop;
   stop.request_stop();
-  const auto report = validate_cage(make_cube(), small_model(), {}, Progress(stop.get_token()));
+  const auto report = validate_cage(make_cube(), small_model(), {}, Progress(stop));
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::cancelled);
 }

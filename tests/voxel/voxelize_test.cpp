@@ -10,7 +10,6 @@
 
 #include <cstring>
 #include <limits>
-#include <stop_token>
 
 namespace cagewright {
 namespace {
@@ -226,8 +225,8 @@ TEST(Voxelize, StopsWhenAsked) {
   const TriangleMesh sphere = make_icosphere(4);
   const OrientedBox frame = pca_box(sphere.positions);
   for (const double when : {0.0, 0.5, 0.75, 0.9}) {
-    std::stop_source stop;
-    const Progress progress(stop.get_token(), [&](double fraction, std::string_view) {
+    StopFlag stop;
+    const Progress progress(stop, [&](double fraction, std::string_view) {
       if (fraction >= when) {
         stop.request_stop();
       }
