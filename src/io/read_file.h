@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -28,7 +29,7 @@ private:
 };
 
 /// Files above this size are refused: 100 million triangles fit.
-inline constexpr std::size_t largest_file = std::size_t{4} << 30U;
+inline constexpr std::uint64_t largest_file = std::uint64_t{4} << 30U;
 
 /// Reads a regular file, at most `largest_file` bytes. Pipes, devices and directories are refused
 /// without being opened, because they may never end.

@@ -4,6 +4,8 @@
 
 #include "io/source.h"
 
+#include <fast_float/fast_float.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -118,18 +120,16 @@ public:
 
   /// The number here, rounded correctly; none, without moving, where there is none. It may be
   /// infinite or not a number, which files hold in places that do not matter.
-  /// std::from_chars, because strtod depends on the locale and streams are slow.
+  /// fast_float, because strtod depends on the locale, streams are slow, and not all standard
+  /// libraries have std::from_chars for it.
   std::optional<double> any_number() {
     const char* from = at_;
     if (from != end_ && *from == '+' && from + 1 != end_ && from[1] != '-') {
       ++from; // from_chars takes no plus
     }
-    double value = 0;
-    const auto [to, error] = std::from_chars(from, end_, value);
-    if (error == std::errc::result_out_of_range) { // which leaves the value as it was
-      value = is_tiny({from, to}) ? 0.0 : std::numeric_limits<double>::infinity();
-      value = *from == '-' ? -value : value;
-    } else if (error != std::errc()) {
+    double value = 0; // 0 or infinity where a number is beyond the range of double
+    const auto [to, error] = fast_float::from_chars(from, end_, value);
+    if (error == std::errc::invalid_argument) {
       return std::nullopt;
     }
     if (!ends_number(to)) {
@@ -197,9 +197,7 @@ public:
   }
 
 private:
-  static bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-  }
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
   static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
@@ -290,23 +288,6 @@ private:
     }
     return p != begin && p[-1] == '\\' &&
            std::memchr(begin, '#', static_cast<std::size_t>(p - begin)) == nullptr;
-  }
-
-  /// Whether a decimal number that has no double is too small for one rather than too large.
-  static bool is_tiny(std::string_view digits) {
-    const std::size_t e = digits.find_first_of("eE");
-    const std::string_view mantissa = digits.substr(0, e);
-    const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
-    const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
-    std::int64_t exponent = 0;
-    if (e != digits.npos) {
-      const char* from = digits.data() + e + 1;
-      from += *from == '+' ? 1 : 0;
-      if (std::from_chars(from, digits.data() + digits.size(), exponent).ec != std::errc()) {
-        return *from == '-'; // an exponent beyond 64 bits
-      }
-    }
-    return static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first) + exponent < 0;
   }
 
   Source source_;

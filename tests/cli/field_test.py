@@ -61,8 +61,6 @@ READERS = [
       "file": {"out/x.ply": ["property double s", "property double nx", "red"]}}),
     ("F97", "convert F75_attributes.ply out/x.obj",
      {"err": ["'quality'", "'label'"], "file": {"out/x.obj": ["\nvt ", "\nvn ", "/1"]}}),
-    ("F97", f"deform F75_attributes.ply {POSE} -o out/x.obj",
-     {**MOVED, "err": ["'quality'", "'label'"], "file": {"out/x.obj": ["\nvt ", "\nvn "]}}),
 ]
 
 # glTF.

@@ -216,7 +216,8 @@ INSTANTIATE_TEST_SUITE_P(
          "file: byte 205: face 0 refers to vertex -1, but there are 3; export the model "
          "again"},
         {little + "element vertex 3\n" + xyz + faces + three_points + '\2' + binary(0, 1),
-         "file: byte 205: face 0 needs 3 corners, but has 2; export the model again"},
+         "file: has no faces; a surface is needed: export the model as a mesh, not as points "
+         "or curves"},
         {little + "element vertex 1\n" + xyz + faces +
              binary(0.F, std::numeric_limits<float>::infinity(), 0.F) + '\3' + binary(0, 0, 0),
          "file: byte 169: vertex 0 has a coordinate that is not a finite number; export the "
@@ -234,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
          "file:11: the line ends within row 1 of the element 'vertex'; export the model "
          "again"},
         {ascii_ply("0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n"),
-         "file:11: 'zero' is not a number; export the model again"},
+         "file:11: 'zero' is not a finite number; export the model again"},
         {ascii_ply("0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n"),
          "file:11: vertex 1 has a coordinate that is not a finite number; export the model "
          "again"},

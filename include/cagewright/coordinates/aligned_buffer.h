@@ -3,17 +3,21 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
 #include <new>
 #include <span>
 #include <type_traits>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
 namespace cagewright {
+
+namespace detail {
+
+/// Memory at a 64-byte boundary, in huge pages where it is large and the system has them. Throws
+/// std::bad_alloc. To be freed by free_aligned alone.
+void* allocate_aligned(std::size_t bytes);
+void free_aligned(void* data) noexcept;
+
+} // namespace detail
 
 /// N numbers at a 64-byte boundary (a cache line, and the widest vector), *not* set to anything:
 /// filling a gigabyte with zeros first costs as much as computing it, and whoever writes a page
@@ -33,28 +37,14 @@ public:
 
 private:
   struct Free {
-    void operator()(T* data) const { std::free(data); }
+    void operator()(T* data) const { detail::free_aligned(data); }
   };
 
   static T* allocate(std::size_t size) {
-    constexpr std::size_t huge_page = std::size_t(1) << 21U;
-    if (size > (static_cast<std::size_t>(-1) / 2) / sizeof(T)) {
+    if (size > std::size_t(-1) / 2 / sizeof(T)) {
       throw std::bad_alloc();
     }
-    const std::size_t alignment = size * sizeof(T) >= 4 * huge_page ? huge_page : 64;
-    const std::size_t bytes = (size * sizeof(T) + alignment - 1) / alignment * alignment;
-    void* data = std::aligned_alloc(alignment, bytes > 0 ? bytes : alignment);
-    if (data == nullptr) {
-      throw std::bad_alloc();
-    }
-#ifdef __linux__
-    if (alignment == huge_page) {
-      // Mapping a fresh gigabyte by pages of 4 kB takes longer than filling it. Only advice:
-      // where it is refused everything still works.
-      (void)madvise(data, bytes, MADV_HUGEPAGE);
-    }
-#endif
-    return static_cast<T*>(data);
+    return static_cast<T*>(detail::allocate_aligned(size * sizeof(T)));
   }
 
   std::unique_ptr<T, Free> data_;
