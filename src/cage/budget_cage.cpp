@@ -2,6 +2,7 @@
 
 #include "cage/budget_pieces.h"
 #include "cage/budget_start.h"
+#include "cage/canonical_model.h"
 #include "cage/improve_to_gap.h"
 #include "cage/limb_rings.h"
 #include "cage/mirrored_pieces.h"
@@ -75,7 +76,7 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
   if (plane || options.symmetry != Symmetry::off) {
     ChosenPlane chosen{plane, ""};
     if (!plane) {
-      chosen = choose_mirror_plane(model, options.symmetry, progress.part(0, started / 2));
+      chosen = choose_mirror_plane(model, options, progress.part(0, started / 2));
       watch.lap("symmetry");
     }
     made.why_not_mirrored = chosen.why_not;
@@ -164,17 +165,54 @@ Result<BudgetCage> make_from_one_start(TriangleView model, const BudgetCageOptio
   return made;
 }
 
+/// The cage, or that from the envelope which promised about as much, whichever came out better.
+Result<BudgetCage> better_of_two(BudgetCage made, TriangleView model,
+                                 const BudgetCageOptions& options, const Progress& progress) {
+  BudgetCageOptions other = options;
+  other.resolution = made.rival->resolution;
+  other.closing = made.rival->closing;
+  std::optional<MirrorPlane> plane;
+  if (made.mirror) {
+    plane = made.mirror->plane;
+  } else {
+    other.symmetry = Symmetry::off;
+  }
+  Result<BudgetCage> again = make_from_one_start(model, other, plane, progress);
+  if (!again) {
+    return again.error().code == ErrorCode::cancelled ? std::move(again)
+                                                      : Result<BudgetCage>(std::move(made));
+  }
+  std::vector<StageTime> times = made.times;
+  times.insert(times.end(), again->times.begin(), again->times.end());
+  const auto cost = [&](const BudgetCage& cage) {
+    return std::pair(!cage.report.reached, cost_of(cage, model));
+  };
+  if (cost(*again) < cost(made)) {
+    again->why_not_mirrored = made.why_not_mirrored;
+    made = std::move(*again);
+  }
+  made.times = std::move(times);
+  return made;
+}
+
 /// One closed surface for the whole model. If the envelope has more handles than the budget can go
 /// round, though it seemed enough for them, more of them are filled, and all if need be: a knot has
 /// but one, and it takes many vertices to go along it.
 Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& options,
                                   const std::optional<MirrorPlane>& plane,
                                   const Progress& progress) {
-  constexpr double usual = 0.9; // of the time: hardly ever is there another start
-  Result<BudgetCage> made = make_from_one_start(model, options, plane, progress.part(0, usual));
+  constexpr double once = 0.5;  // of the time
+  constexpr double usual = 0.9; // hardly ever is there a third start
+  Result<BudgetCage> made = make_from_one_start(model, options, plane, progress.part(0, once));
   const bool is_chosen = options.resolution == 0 && options.envelope_vertices == 0;
   if (!made || !is_chosen || options.max_gap > 0) {
     return made;
+  }
+  if (made->rival && !options.quads) {
+    made = better_of_two(*std::move(made), model, options, progress.part(once, usual));
+    if (!made) {
+      return made;
+    }
   }
   double done = usual;
   constexpr int none = 1; // vertices enough to go round none
@@ -260,7 +298,7 @@ Result<BudgetCage> make_all_pieces(TriangleView model, const BudgetCageOptions& 
     plain.boxes.boxes.pieces = Pieces::together;
     return make_one_piece(model, plain, std::nullopt, progress);
   }
-  ChosenPlane chosen = choose_mirror_plane(model, options.symmetry, progress.part(0, started / 2));
+  ChosenPlane chosen = choose_mirror_plane(model, options, progress.part(0, started / 2));
   if (chosen.plane) {
     Result<BudgetCage> mirrored =
         make_mirrored(model, *chosen.plane, options, progress.part(started / 2, 1));
@@ -288,6 +326,62 @@ Result<BudgetCage> make_all_pieces(TriangleView model, const BudgetCageOptions& 
   return judged_in_pieces(std::move(made), model, progress.part(improved, 1));
 }
 
+Result<BudgetCage> made_as_it_is(TriangleView model, const BudgetCageOptions& options,
+                                 const Progress& progress) {
+  return options.boxes.boxes.pieces == Pieces::apart
+             ? make_all_pieces(model, options, progress)
+             : make_one_piece(model, options, std::nullopt, progress);
+}
+
+/// The same cage wherever the model is and in whatever unit and order: that of the canonical model,
+/// which is judged against the model itself.
+Result<BudgetCage> made_anywhere(TriangleView model, const BudgetCageOptions& options,
+                                 const Progress& progress) {
+  const Result<UnitFrame> frame = unit_frame(model);
+  const std::size_t densities = options.improve.density.size();
+  const double grid = canonical_grid(options.improve.clearance);
+  // Boxes are told in the model's own coordinates; and a gap as narrow as the clearance allows
+  // leaves no room for rounding.
+  const bool has_room = options.max_gap == 0 ||
+                        can_keep_gap(options.max_gap - grid, options.improve.clearance + grid);
+  if (!frame || !has_room || options.start == CageStart::obb ||
+      (densities > 0 && densities != model.positions.size())) {
+    return made_as_it_is(model, options, progress);
+  }
+  constexpr double usual = 0.98; // of the time
+  const CanonicalModel canonical = canonical_model(model, *frame, grid);
+  BudgetCageOptions own = options;
+  own.origin = frame->to_unit(Vec3::Zero());
+  own.improve.clearance += grid;
+  own.max_gap -= options.max_gap > 0 ? grid : 0;
+  std::vector<double> density;
+  for (const Index v : canonical.vertices) {
+    if (densities > 0) {
+      density.push_back(options.improve.density[v]);
+    }
+  }
+  own.improve.density = density;
+  Result<BudgetCage> made = made_as_it_is(canonical.mesh, own, progress.part(0, usual));
+  if (!made) {
+    return made;
+  }
+  bring_back(*made, model, *frame);
+  made->clearance = std::min(options.improve.clearance, made->clearance);
+  made->clearance_asked = options.improve.clearance;
+  if (made->gap) {
+    *made->gap += grid;
+  }
+  const ValidateOptions judging{.allow_pieces = made->pieces > 1, .first_only = true};
+  const Progress checking = progress.part(usual, 1);
+  const Result<ValidityReport> validity =
+      made->polygons ? validate_cage(*made->polygons, model, judging, checking)
+                     : validate_cage(made->cage, model, judging, checking);
+  if (!validity) {
+    return validity.error();
+  }
+  return validity->valid() ? std::move(made) : made_as_it_is(model, options, checking);
+}
+
 } // namespace
 
 Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions& asked,
@@ -306,9 +400,7 @@ Result<BudgetCage> make_budget_cage(TriangleView model, const BudgetCageOptions&
     }
     options.symmetry = Symmetry::off;
   }
-  Result<BudgetCage> made = options.boxes.boxes.pieces == Pieces::apart
-                                ? make_all_pieces(model, options, progress)
-                                : make_one_piece(model, options, std::nullopt, progress);
+  Result<BudgetCage> made = made_anywhere(model, options, progress);
   if (made && !why_not.empty()) {
     made->why_not_mirrored = why_not;
   }

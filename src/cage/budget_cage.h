@@ -20,6 +20,12 @@ enum class CageStart {
   obb,      ///< the union of oriented boxes
 };
 
+/// How an envelope is made.
+struct EnvelopeSetting {
+  int resolution = 0; ///< voxels along the model's diagonal
+  double closing = 0; ///< gaps narrower than twice this, in diagonals, are filled
+};
+
 struct BudgetCageOptions {
   CageStart start = CageStart::envelope;
   ImproveOptions improve = {}; ///< the budget and the clearance among them
@@ -36,6 +42,7 @@ struct BudgetCageOptions {
   /// would meet or lie one within another, or that are too small for the budget, are joined.
   BoxCageOptions boxes = {};
   Symmetry symmetry = Symmetry::off;
+  Vec3 origin = Vec3::Zero(); ///< of the user's coordinates: mirror planes through it are preferred
   /// Quads where they can be. A quad counts as one face. The clearance, the density and the
   /// objective are those of `improve`.
   bool quads = false;
@@ -56,9 +63,12 @@ struct BudgetCage {
   std::size_t start_vertices = 0;
   int resolution = 0; ///< of the envelope
   int genus = 0;      ///< of the envelope: its handles
-  int bridges = 0;    ///< of the envelope: rods that join pieces of the model
-  int pieces = 1;     ///< closed surfaces of the cage
-  int joined = 0;     ///< groups of pieces that are apart, yet had to share a cage with others
+  int known = 0;      ///< handles that the model itself has, as far as is known
+  /// An envelope that promised about as much as the one taken, if there was one.
+  std::optional<EnvelopeSetting> rival;
+  int bridges = 0; ///< of the envelope: rods that join pieces of the model
+  int pieces = 1;  ///< closed surfaces of the cage
+  int joined = 0;  ///< groups of pieces that are apart, yet had to share a cage with others
   /// With max_gap: no point of the cage is farther from the model, in diagonals: proved.
   std::optional<double> gap;
   std::optional<BoxCage> boxes;        ///< what the boxes gave, if they were the start

@@ -1,13 +1,14 @@
 #include "cage/quad_stage.h"
 
+#include "cage/budget_start.h"
 #include "quads/grid_quads.h"
 #include "validate/greatest_gap.h"
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/webbing.h>
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace cagewright {
@@ -77,25 +78,6 @@ bool is_well_shaped(const QuadReport& quads) {
   return is_mostly_good(quads) && quads.least_quality >= needle;
 }
 
-/// How much more a cage of blocks may have than quads made of triangles. It is all quads, in strips
-/// all round: that is worth some room between cage and model, but less if the pairs have rings
-/// round limbs, and more if too few of their faces are quads, or too many are thin.
-struct MostMore {
-  double loose = 1; ///< times as loose
-  /// Times the volume. Where blocks span two limbs their faces are near the model all the same; it
-  /// is the volume that shows it.
-  double volume = 1;
-};
-
-MostMore most_more(const Quadrangulated& pairs) {
-  if (!is_mostly_good(pairs.report)) {
-    return {2, 1.25};
-  }
-  const bool has_rings = std::any_of(pairs.parts.begin(), pairs.parts.end(),
-                                     [&](Index part) { return part != pairs.parts.front(); });
-  return has_rings ? MostMore{1.25, 1.04} : MostMore{1.5, 1.08};
-}
-
 /// Of a half: up to its plane, seen from where what closes it there has no volume.
 double volume_of(const PolygonMesh& cage, CageExtent extent) {
   const TriangleMesh mesh = to_triangle_mesh(cage);
@@ -105,6 +87,43 @@ double volume_of(const PolygonMesh& cage, CageExtent extent) {
   }
   return signed_volume(mesh, origin);
 }
+
+/// What a cage costs: whether it is beyond the budget, and then its volume and what there is
+/// between it and the model, times what webs and ill shaped faces add. Less is better.
+using Cost = std::pair<bool, double>;
+
+class Judge {
+public:
+  Judge(const QuadTask& task, const QuadOptions& quads)
+      : extent_(task.budget.extent), quads_(quads), all_(with_strays(task.model)),
+        surface_(all_, task.diagonal),
+        between_(extent_ == CageExtent::half ? whole_of(all_) : all_) {}
+
+  [[nodiscard]] double looseness_of(const QuadStage& stage) const {
+    return looseness(stage.made.cage, surface_, all_, quads_);
+  }
+
+  [[nodiscard]] Cost cost_of(const QuadStage& stage) const {
+    const TriangleMesh cage = to_triangle_mesh(stage.made.cage);
+    const double webbing =
+        between_.share_inside(extent_ == CageExtent::half ? whole_of(cage) : cage);
+    const QuadReport& report = stage.made.report;
+    constexpr double of_shapes = 2;
+    constexpr double for_needles = 0.1;
+    const double shapes = of_shapes * (std::max(0.0, enough_quads - report.share) +
+                                       std::max(0.0, report.thin - few_thin)) +
+                          (report.least_quality < needle ? for_needles : 0);
+    return {!stage.report.reached, (volume_of(stage.made.cage, extent_) + looseness_of(stage)) *
+                                       (1 + webbing) * (1 + shapes)};
+  }
+
+private:
+  CageExtent extent_;
+  QuadOptions quads_;
+  TriangleMesh all_;
+  ModelSurface surface_;
+  SpaceBetween between_;
+};
 
 /// How many triangles are made for so many faces, to begin with.
 int triangles_for(int faces) {
@@ -188,17 +207,9 @@ bool rings_cost_much(const QuadTask& task, const QuadStage& with, const Progress
          with.report.objective > much * without->report.objective;
 }
 
-/// What decides between two cages, in the order of weight: the budget, enough quads, no needles,
-/// round faces.
-std::tuple<bool, double, double, double> merit(const QuadStage& stage) {
-  const QuadReport& made = stage.made.report;
-  return {stage.report.reached, std::min(made.share, enough_quads),
-          std::min(made.least_quality, needle), -std::max(made.thin, few_thin)};
-}
-
 /// The same with the rings, or without if they cost much, or do not leave enough vertices, enough
 /// quads or round enough faces.
-Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads,
+Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads, const Judge& judge,
                                const Progress& progress) {
   constexpr double usual = 0.8; // of the time
   constexpr double compared = 0.85;
@@ -211,43 +222,39 @@ Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads,
     return with;
   }
   Result<QuadStage> without = paired_quads(task, {}, quads, progress.part(compared, 1));
-  const bool is_better =
-      without && (much ? merit(*without) >= merit(*with) : merit(*without) > merit(*with));
+  const bool is_better = without && judge.cost_of(*without) < judge.cost_of(*with);
   return !without || is_better ? std::move(without) : std::move(with);
 }
 
-/// The better one of quads made of triangles, and of blocks.
-Result<QuadStage> best_quads(const QuadTask& task, const QuadOptions& quads,
+/// The better one of quads made of triangles, and of blocks. Those of blocks are all quads, in
+/// strips all round: that is worth a little, but less if the others have rings round limbs.
+Result<QuadStage> best_quads(const QuadTask& task, const QuadOptions& quads, const Judge& judge,
                              const Progress& progress) {
   const BudgetCageOptions& options = task.options;
   const ImproveOptions& budget = task.budget;
   // Of blocks nothing is known about the greatest gap.
   const bool try_blocks = options.max_gap == 0 && (budget.vertices > 0 || budget.faces > 0);
   constexpr double paired = 0.5; // of the time
-  Result<QuadStage> pairs = ringed_quads(task, quads, progress.part(0, try_blocks ? paired : 1));
+  Result<QuadStage> pairs =
+      ringed_quads(task, quads, judge, progress.part(0, try_blocks ? paired : 1));
   if (!pairs || !try_blocks) {
     return pairs;
   }
-  const TriangleMesh all = with_strays(task.model);
-  const ModelSurface surface(all, task.diagonal);
-  const auto loose = [&](const QuadStage& stage) {
-    return looseness(stage.made.cage, surface, all, quads);
-  };
-  const MostMore most = most_more(pairs->made);
-  const double loosest = pairs->report.reached ? most.loose * loose(*pairs) : 0; // 0: any
+  constexpr double most_loose = 1.5; // times as much as pairs: then they are dearer in any case
+  const double loosest = pairs->report.reached ? most_loose * judge.looseness_of(*pairs) : 0;
   const Result<QuadStage> blocks =
       quads_of_blocks(task.model, quads, budget, loosest, progress.part(paired, 1));
-  if (!blocks && blocks.error().code == ErrorCode::cancelled) {
-    return blocks;
+  if (!blocks) {
+    return blocks.error().code == ErrorCode::cancelled ? blocks : pairs;
   }
-  const auto volume = [&](const QuadStage& stage) {
-    return volume_of(stage.made.cage, budget.extent);
-  };
+  const auto [over, cost] = judge.cost_of(*pairs);
+  constexpr double worth = 1.08;
+  constexpr double worth_rings = 1.03;
+  const std::vector<Index>& parts = pairs->made.parts;
+  const bool has_rings =
+      std::any_of(parts.begin(), parts.end(), [&](Index part) { return part != parts.front(); });
   const bool is_better =
-      blocks && blocks->report.reached &&
-      (blocks->made.report.thin <= few_thin || !is_mostly_good(pairs->made.report)) &&
-      (loosest == 0 ||
-       (loose(*blocks) <= loosest && volume(*blocks) <= most.volume * volume(*pairs)));
+      judge.cost_of(*blocks) < Cost{over, cost * (has_rings ? worth_rings : worth)};
   return is_better ? blocks : pairs;
 }
 
@@ -267,17 +274,18 @@ Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& pro
   quads.shape = budget.shape;
   quads.density = budget.density;
   quads.diagonal = task.diagonal;
+  const Judge judge(task, quads);
   constexpr double usual = 0.9; // of the time: hardly ever is there another try
-  Result<QuadStage> made = best_quads(task, quads, progress.part(0, usual));
+  Result<QuadStage> made = best_quads(task, quads, judge, progress.part(0, usual));
   if (!made || !made->report.reached || options.max_gap > 0 || is_well_shaped(made->made.report)) {
     return made;
   }
   constexpr double dearer = 2;
   quads.shape *= dearer;
-  Result<QuadStage> again = best_quads(task, quads, progress.part(usual, 1));
+  Result<QuadStage> again = paired_quads(task, task.rings, quads, progress.part(usual, 1));
   const bool is_cancelled = !again && again.error().code == ErrorCode::cancelled;
-  return is_cancelled || (again && merit(*again) > merit(*made)) ? std::move(again)
-                                                                 : std::move(made);
+  return is_cancelled || (again && judge.cost_of(*again) < judge.cost_of(*made)) ? std::move(again)
+                                                                                 : std::move(made);
 }
 
 } // namespace cagewright

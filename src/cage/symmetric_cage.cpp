@@ -123,12 +123,14 @@ Result<Improved> improve_half(const TriangleMesh& start, const Task& task, doubl
 
 } // namespace
 
-ChosenPlane choose_mirror_plane(TriangleView model, Symmetry symmetry, const Progress& progress) {
+ChosenPlane choose_mirror_plane(TriangleView model, const BudgetCageOptions& options,
+                                const Progress& progress) {
+  const Symmetry symmetry = options.symmetry;
   switch (symmetry) {
   case Symmetry::off:
     return {};
   case Symmetry::automatic:
-    if (const auto plane = detect_mirror_plane(model, {}, progress)) {
+    if (const auto plane = detect_mirror_plane(model, {.origin = options.origin}, progress)) {
       if (plane->mean_error <= nearly) {
         return {plane, ""};
       }
@@ -142,7 +144,7 @@ ChosenPlane choose_mirror_plane(TriangleView model, Symmetry symmetry, const Pro
     break;
   }
   const int axis = symmetry == Symmetry::x ? 0 : symmetry == Symmetry::y ? 1 : 2;
-  if (const auto plane = best_mirror_plane(model, axis)) {
+  if (const auto plane = best_mirror_plane(model, axis, options.origin)) {
     return {plane, ""};
   }
   return {std::nullopt, "the model has no surface to mirror"};

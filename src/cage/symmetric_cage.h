@@ -17,7 +17,7 @@ struct ChosenPlane {
   std::string why_not;
 };
 
-ChosenPlane choose_mirror_plane(TriangleView model, Symmetry symmetry,
+ChosenPlane choose_mirror_plane(TriangleView model, const BudgetCageOptions& options,
                                 const Progress& progress = {});
 
 /// make_budget_cage() for a cage that is its own mirror image in the plane: it encloses the model

@@ -175,6 +175,7 @@ Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches
   }
   Envelope result;
   result.resolution = resolution;
+  result.closing = options.closing;
   result.bridges = join_pieces(*grid);
   make_manifold(*grid, options.half); // bridges do not heed the plane
   for (VoxelKind& kind : grid->kinds) {
@@ -184,6 +185,7 @@ Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches
   const auto euler = static_cast<long>(result.mesh.positions.size()) -
                      static_cast<long>(result.mesh.triangles.size() / 2);
   result.genus = static_cast<int>(1 - euler / 2);
+  result.known = static_cast<int>(known_handles(patches, model.positions.size()));
   if (options.half) {
     result.mesh = half_of(std::move(result.mesh), grid->size);
   }

@@ -29,7 +29,9 @@ struct EnvelopeOptions {
 struct Envelope {
   TriangleMesh mesh;
   int resolution = 0; ///< voxels along the model's diagonal
+  double closing = 0; ///< that was needed: see EnvelopeOptions
   int genus = 0;      ///< handles of the whole surface
+  int known = 0;      ///< handles of the model itself, if it is one closed piece
   int bridges = 0;    ///< rods of voxels added to join the model's pieces
 };
 

@@ -109,7 +109,7 @@ private:
     reduce(Placement::outside_patch, std::max(budget_, careful_from(budget_)),
            progress.part(0.1, 0.2));
     reduce(Placement::clear_of_model, budget_, progress.part(0.2, 1));
-    if (over_budget()) {
+    if (over_budget() && !options_.draft) {
       get_unstuck(progress.part(1, 1));
     }
   }
@@ -159,6 +159,9 @@ private:
   // then collapses what costs least. \returns the objective
   double refine(const Progress& progress) {
     double best = settle(2, progress.part(0, 0.1));
+    if (options_.draft) {
+      return best;
+    }
     WorkingCage kept = cage_;
     std::size_t count = std::max(budget_, cage_.mesh.vertex_count());
     // Of so many vertices one is moved elsewhere in a round: many at first, and fewer whenever that
@@ -401,6 +404,9 @@ private:
 
   // With how many vertices the careful way of simplifying begins, if so many are to be left.
   [[nodiscard]] std::size_t careful_from(std::size_t vertices) const {
+    if (options_.draft) {
+      return 2 * vertices;
+    }
     constexpr std::size_t more = 300; // the coarser the cage, the more each collapse matters
     return static_cast<std::size_t>(options_.careful_from * static_cast<double>(vertices)) + more;
   }

@@ -25,6 +25,8 @@ struct ImproveOptions {
   /// How often, at most, the cage is refined and simplified again, to move vertices to where they
   /// pay.
   int rounds = 6;
+  /// Only a quick way to the budget, to see what a start is worth.
+  bool draft = false;
   double square = 40;  ///< weight of large gaps: see ObjectiveWeights
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
   /// How many times its final number of vertices, and 300 more, the cage has when the quick way of

@@ -57,7 +57,7 @@ double mean_of(std::span<const double> numbers) {
 /// The surface in coordinates where its middle is the origin and its diagonal 1.
 class Surface {
 public:
-  explicit Surface(TriangleView model) {
+  Surface(TriangleView model, const Vec3& origin) {
     const Box3 box = bounding_box(model);
     diagonal_ = box.diagonal().norm();
     if (model.triangles.empty() || !(diagonal_ > 0) || !std::isfinite(diagonal_)) {
@@ -84,7 +84,7 @@ public:
     }
     center_ += diagonal_ * middle;
     box_center_ = -middle;
-    world_origin_ = -center_ / diagonal_;
+    world_origin_ = (origin - center_) / diagonal_;
     usable_ = true;
     for (const Triangle& t : mesh.triangles) {
       const double part = area_of(mesh, t);
@@ -449,7 +449,7 @@ int MirrorPlane::axis() const {
 
 std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorOptions& options,
                                                const Progress& progress) {
-  const Surface surface(model);
+  const Surface surface(model, options.origin);
   if (!surface.usable()) {
     return std::nullopt;
   }
@@ -505,8 +505,8 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
   return described(surface, *chosen);
 }
 
-std::optional<MirrorPlane> best_mirror_plane(TriangleView model, int axis) {
-  const Surface surface(model);
+std::optional<MirrorPlane> best_mirror_plane(TriangleView model, int axis, const Vec3& origin) {
+  const Surface surface(model, origin);
   if (!surface.usable()) {
     return std::nullopt;
   }
