@@ -70,8 +70,13 @@ Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Se
   if (options.strict) {
     return Error{ErrorCode::no_valid_cage, message};
   }
-  std::fprintf(stderr, "cagewright: warning: %s\n", message.c_str());
+  warn(message);
   return success();
+}
+
+int fail_of_judge(const Error& error) {
+  const int exit_code = fail(error);
+  return error.code == ErrorCode::no_valid_cage ? found_faults : exit_code;
 }
 
 Result<MeanValueSolver> make_solver(const PolygonMesh& cage, const BindingOptions& options) {

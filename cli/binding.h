@@ -37,6 +37,9 @@ Result<ModelAndCage> read_model_and_cage(const BindingOptions& options);
 /// error (no_valid_cage).
 Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Session& session);
 
+/// fail() for what judge() returns: a cage that is not valid is a finding.
+int fail_of_judge(const Error& error);
+
 /// The cage ready for binding; it may be open, of which judge() has warned.
 Result<MeanValueSolver> make_solver(const PolygonMesh& cage, const BindingOptions& options);
 

@@ -1,9 +1,9 @@
 #include "load.h"
 
+#include "io/atomic_file.h"
+#include "io/source.h"
 #include <cagewright/io/mesh_format.h>
 #include <cagewright/mesh/triangulate.h>
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -14,6 +14,8 @@
 
 namespace cagewright::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 // One run of the program is one command, which reads from one thread.
 std::vector<FileNote>& told() {
@@ -65,35 +67,32 @@ Result<TriangleMesh> load_triangles(const std::string& path) {
 
 Error in_file(const std::string& path, Error error) {
   if (error.code != ErrorCode::cancelled) {
-    error.message = path + ": " + error.message;
+    error.message = one_line(path) + ": " + error.message;
   }
   return error;
 }
 
-Status can_write_mesh(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    return Error{ErrorCode::cannot_write, path + ": is a folder; give the name of a file"};
+Status can_write_output(const std::string& path, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code none; // a file that is not there yet is no input
+    if (fs::equivalent(path, input, none) && fs::is_regular_file(path, none)) {
+      return Error{ErrorCode::cannot_write,
+                   one_line(path) + ": the command reads this file and would write over it; give "
+                                    "the output another name"};
+    }
   }
+  return path == "-" ? success() : can_write_file(path);
+}
+
+Status can_write_mesh(const std::string& path, const std::vector<std::string>& inputs) {
+  std::error_code none;
   const std::optional<MeshFormat> format = format_of_name(path);
-  if (!format || *format == MeshFormat::gltf) {
+  if (!fs::is_directory(path, none) && (!format || *format == MeshFormat::gltf)) {
     return Error{ErrorCode::unsupported,
-                 path + ": meshes are written as .obj, .ply, .stl or .off; use one of these"};
+                 one_line(path) + ": meshes are written as .obj, .ply, .stl or .off; use one of "
+                                  "these"};
   }
-  fs::path folder = fs::path(path).parent_path();
-  if (folder.empty()) {
-    folder = ".";
-  }
-  if (!fs::is_directory(folder, ignored)) {
-    return Error{ErrorCode::cannot_write,
-                 path + ": the folder " + folder.string() + " does not exist; create it first"};
-  }
-  if (access(folder.c_str(), W_OK) != 0) {
-    return Error{ErrorCode::cannot_write,
-                 path + ": no permission to write to the folder " + folder.string()};
-  }
-  return success();
+  return can_write_output(path, inputs);
 }
 
 } // namespace cagewright::cli

@@ -11,6 +11,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace cagewright::cli {
 
@@ -32,8 +33,11 @@ Result<TriangleMesh> load_triangles(const std::string& path);
 /// The error, with the file it is about in front of the message.
 Error in_file(const std::string& path, Error error);
 
-/// Whether an output of that name can be written, asked before minutes are spent on making it: its
-/// extension is that of a format we write, and its folder exists and may be written to.
-Status can_write_mesh(const std::string& path);
+/// Whether a file of that name can be written, asked before minutes are spent on making it, and is
+/// none of those that the command reads: they would be lost. "-" and devices may always be written.
+Status can_write_output(const std::string& path, const std::vector<std::string>& inputs);
+
+/// The same for a mesh: its extension is that of a format we write.
+Status can_write_mesh(const std::string& path, const std::vector<std::string>& inputs = {});
 
 } // namespace cagewright::cli

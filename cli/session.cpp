@@ -1,11 +1,29 @@
 #include "session.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <memory>
 
 namespace cagewright::cli {
+namespace {
+
+const Session* session_at_hand = nullptr;
+
+/// What the user should read: being stopped by a limit is more than being stopped.
+Error as_told(const Error& error) {
+  if (error.code != ErrorCode::cancelled || session_at_hand == nullptr ||
+      !session_at_hand->out_of_time) {
+    return error;
+  }
+  return {ErrorCode::cancelled,
+          fmt::format("the time limit of {} is reached, nothing was written; allow more with "
+                      "--time-limit, or ask for less (fewer vertices, a lower resolution)",
+                      seconds_as_text(session_at_hand->limits.seconds))};
+}
+
+} // namespace
 
 Progress Session::progress() const {
   if (quiet || isatty(STDERR_FILENO) == 0) {
@@ -22,18 +40,43 @@ Progress Session::progress() const {
   });
 }
 
-int fail(const Error& error) {
-  std::fprintf(stderr, "%scagewright: %s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "",
-               error.message.c_str());
+void Session::say(std::string_view text) const {
+  if (!quiet) {
+    std::fwrite(text.data(), 1, text.size(), json == "-" ? stderr : stdout);
+  }
+}
+
+void Session::begin() {
+  session_at_hand = this;
+}
+
+ExitCode exit_code_of(const Error& error) {
   switch (error.code) {
   case ErrorCode::cancelled:
-    return interrupted;
+    return session_at_hand != nullptr && session_at_hand->out_of_time ? limit_reached : interrupted;
+  case ErrorCode::too_large:
+    return limit_reached;
   case ErrorCode::no_valid_cage:
   case ErrorCode::not_available:
-    return could_not;
+    return not_satisfiable;
   default:
     return bad_input;
   }
+}
+
+int fail(const Error& error) {
+  const Error told = as_told(error);
+  std::fprintf(stderr, "%scagewright: %s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "",
+               told.message.c_str());
+  if (session_at_hand != nullptr && !session_at_hand->first_failure) {
+    session_at_hand->first_failure = told;
+  }
+  return exit_code_of(error);
+}
+
+void warn(std::string_view message) {
+  std::fprintf(stderr, "cagewright: warning: %.*s\n", static_cast<int>(message.size()),
+               message.data());
 }
 
 } // namespace cagewright::cli

@@ -1,4 +1,5 @@
 #include "binding.h"
+#include "load.h"
 #include "session.h"
 
 #include <cagewright/deform/weights_file.h>
@@ -6,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -19,12 +19,17 @@ struct Options {
 };
 
 int run(const Options& options, const Session& session) {
+  if (const Status writable =
+          can_write_output(options.output, {options.binding.model, options.binding.cage});
+      !writable) {
+    return fail(writable.error());
+  }
   const Result<ModelAndCage> meshes = read_model_and_cage(options.binding);
   if (!meshes) {
     return fail(meshes.error());
   }
   if (Status status = judge(*meshes, options.binding, session); !status) {
-    return fail(status.error());
+    return fail_of_judge(status.error());
   }
   const Result<MeanValueSolver> solver = make_solver(meshes->cage, options.binding);
   if (!solver) {
@@ -37,11 +42,10 @@ int run(const Options& options, const Session& session) {
     return fail(counts.error());
   }
   warn_of_points(options.binding.cage, counts->on_surface, counts->undefined);
-  if (!session.quiet) {
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    fmt::print("{}: {} model vertices bound to {} cage vertices in {:.2f} s\n", options.output,
-               meshes->model.positions.size(), meshes->cage.positions.size(), seconds.count());
-  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  session.say(fmt::format("{}: {} model vertices bound to {} cage vertices in {:.2f} s\n",
+                          options.output, meshes->model.positions.size(),
+                          meshes->cage.positions.size(), seconds.count()));
   return done;
 }
 

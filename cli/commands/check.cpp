@@ -1,8 +1,8 @@
 #include "cage_figures.h"
+#include "json.h"
 #include "load.h"
 #include "session.h"
 
-#include "io/atomic_file.h"
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/cage_metrics.h>
 #include <cagewright/validate/validate_cage.h>
@@ -167,16 +167,12 @@ int run(const Options& options, const Session& session) {
     nlohmann::json json = to_json(*report);
     json["cage"] = figures_as_json(metrics);
     json["notes"] = notes_as_json();
-    if (const Status status = write_file_atomically(options.json, json.dump(2) + "\n"); !status) {
+    if (const Status status = write_json(options.json, json, 2); !status) {
       return fail(status.error());
     }
   }
-  if (!session.quiet) {
-    const std::string text =
-        report->valid() ? "valid\n" + figures_as_text(metrics) : describe(*report);
-    std::fputs(text.c_str(), stdout);
-  }
-  return report->valid() ? done : could_not;
+  session.say(report->valid() ? "valid\n" + figures_as_text(metrics) : describe(*report));
+  return report->valid() ? done : found_faults;
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 #include "cage_figures.h"
+#include "json.h"
 #include "load.h"
 #include "session.h"
 
-#include "io/atomic_file.h"
 #include <cagewright/deform/standard_poses.h>
 #include <cagewright/validate/cage_metrics.h>
 #include <cagewright/validate/model_volume.h>
@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -209,13 +208,11 @@ int run(const Options& options, const Session& session) {
     for (const Compared& cage : cages) {
       json["cages"].push_back(as_json(cage));
     }
-    if (const Status written = write_file_atomically(options.json, json.dump(1) + "\n"); !written) {
+    if (const Status written = write_json(options.json, json); !written) {
       return fail(written.error());
     }
   }
-  if (!session.quiet) {
-    std::fputs(as_text(cages).c_str(), stdout);
-  }
+  session.say(as_text(cages));
   return done;
 }
 

@@ -103,6 +103,20 @@ Result<std::vector<Pose>> plan_outputs(const Options& options) {
   return poses;
 }
 
+/// Whether all outputs can be written, and none over a file that is read.
+Status can_write_all(const Options& options, const std::vector<Pose>& poses) {
+  std::vector<std::string> inputs = {options.binding.model, options.binding.cage, options.weights};
+  for (const Pose& pose : poses) {
+    inputs.push_back(pose.path);
+  }
+  for (const Pose& pose : poses) {
+    if (Status status = can_write_output(pose.output, inputs); !status) {
+      return status;
+    }
+  }
+  return success();
+}
+
 Result<std::vector<std::vector<Vec3>>> read_poses(const std::vector<Pose>& poses,
                                                   const PolygonMesh& rest) {
   std::vector<std::vector<Vec3>> positions;
@@ -267,6 +281,9 @@ int run(const Options& options, const Session& session) {
   if (!poses) {
     return fail(poses.error());
   }
+  if (const Status writable = can_write_all(options, *poses); !writable) {
+    return fail(writable.error());
+  }
   const Result<ModelAndCage> meshes = read_model_and_cage(options.binding);
   if (!meshes) {
     return fail(meshes.error());
@@ -292,7 +309,7 @@ int run(const Options& options, const Session& session) {
   // With weights from a file the cage was judged when they were made.
   if (options.weights.empty() || options.binding.strict) {
     if (Status status = judge(*meshes, options.binding, session); !status) {
-      return fail(status.error());
+      return fail_of_judge(status.error());
     }
   }
   Result<std::vector<std::vector<Vec3>>> results =
@@ -314,15 +331,11 @@ int run(const Options& options, const Session& session) {
         !status) {
       return fail(status.error());
     }
-    if (!session.quiet) {
-      std::fputs(summary(rest, (*results)[i], (*poses)[i].output).c_str(), stdout);
-    }
+    session.say(summary(rest, (*results)[i], (*poses)[i].output));
   }
   warn_of_links(options.binding.model, *poses);
-  if (!session.quiet) {
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    fmt::print("{:.2f} s in all\n", seconds.count());
-  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  session.say(fmt::format("{:.2f} s in all\n", seconds.count()));
   return done;
 }
 

@@ -4,7 +4,6 @@
 #include "session.h"
 
 #include "exact/predicates.h"
-#include "io/atomic_file.h"
 #include "mesh/topology.h"
 #include "obb/minimum_box.h"
 #include "obb/principal_axes.h"
@@ -21,7 +20,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>
@@ -289,17 +287,12 @@ int run(const Options& options, const Session& session) {
   if (!options.json.empty()) {
     nlohmann::json figures = to_json(*info);
     figures["notes"] = notes_as_json();
-    const std::string json = figures.dump(2) + "\n";
-    if (const Status status = write_file_atomically(options.json, json); !status) {
+    if (const Status status = write_json(options.json, figures, 2); !status) {
       return fail(status.error());
     }
   }
-  if (!session.quiet) {
-    const std::string text = describe_faces(*info) + describe_topology(*info) +
-                             describe_defects(*info) + describe_sizes(*info) +
-                             describe_mirror(*info);
-    std::fputs(text.c_str(), stdout);
-  }
+  session.say(describe_faces(*info) + describe_topology(*info) + describe_defects(*info) +
+              describe_sizes(*info) + describe_mirror(*info));
   return done;
 }
 

@@ -136,6 +136,11 @@ Result<Image> draw_beside(RenderCommand& command) {
 }
 
 int run(RenderCommand& command) {
+  if (const Status writable =
+          can_write_output(command.output, {command.model, command.cage, command.beside});
+      !writable) {
+    return fail(writable.error());
+  }
   const Result<Image> image = draw_beside(command);
   if (!image) {
     return fail(image.error());

@@ -2,6 +2,7 @@
 
 #include "generate/density.h"
 #include "generate/report.h"
+#include "json.h"
 #include "load.h"
 
 #include "cage/decompose.h"
@@ -9,22 +10,19 @@
 #include "io/atomic_file.h"
 #include "voxel/voxel_mesh.h"
 #include <cagewright/cage/generate.h>
+#include <cagewright/io/mesh_format.h>
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/triangulate.h>
 
 #include <array>
-#include <cstdio>
+#include <cassert>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace cagewright::cli {
 namespace {
-
-void say(const Session& session, const std::string& text) {
-  if (!session.quiet) {
-    std::fputs(text.c_str(), stdout);
-  }
-}
 
 /// One object for each box, in the model's own coordinates.
 PolygonMesh box_objects(const BoxDecomposition& boxes, const std::vector<int>& cover) {
@@ -51,18 +49,28 @@ PolygonMesh voxel_objects(const BoxDecomposition& boxes) {
   return mesh;
 }
 
-/// Writes the JSON first: should the mesh fail then, no result stands without its description.
+/// The mesh and its description: both or neither.
 Status write_outputs(const GenerateArguments& arguments, const PolygonMesh& mesh,
                      const nlohmann::json& description) {
-  if (!arguments.json.empty()) {
-    nlohmann::json all = description;
-    all["notes"] = notes_as_json();
-    const Status written = write_file_atomically(arguments.json, all.dump(1) + "\n");
-    if (!written) {
+  const std::optional<MeshFormat> format = format_of_name(arguments.output);
+  assert(format); // run_generate() has asked can_write_mesh()
+  const Result<std::string> bytes = format_mesh(mesh, *format);
+  if (!bytes) {
+    return in_file(arguments.output, bytes.error());
+  }
+  nlohmann::json all = description;
+  all["notes"] = notes_as_json();
+  const std::string json = text_of(all, 1);
+  std::vector<NamedBytes> files;
+  if (arguments.json == "-") {
+    if (Status written = write_json(arguments.json, all); !written) {
       return written;
     }
+  } else if (!arguments.json.empty()) {
+    files.push_back({arguments.json, json});
   }
-  return write_mesh(mesh, arguments.output);
+  files.push_back({arguments.output, *bytes});
+  return write_files_atomically(files);
 }
 
 int emit_stage(const GenerateArguments& arguments, const Session& session,
@@ -78,7 +86,7 @@ int emit_stage(const GenerateArguments& arguments, const Session& session,
   if (const Status written = write_outputs(arguments, mesh, to_json(*boxes, cover)); !written) {
     return fail(written.error());
   }
-  say(session, summary(*boxes, cover));
+  session.say(summary(*boxes, cover));
   return done;
 }
 
@@ -94,20 +102,27 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
       !written) {
     return fail(written.error());
   }
-  say(session, summary(*made, options));
+  session.say(summary(*made, options));
   if (made->is_as_asked()) {
     return done;
   }
-  std::fprintf(stderr, "cagewright: not as asked for: %s\n", made->remarks.front().message.c_str());
-  return not_as_asked;
+  return fail({ErrorCode::no_valid_cage,
+               "not as asked for: " + made->remarks.front().message}); // exit code 3
 }
 
 } // namespace
 
 int run_generate(const GenerateArguments& arguments, const Session& session) {
   std::fputs(without_effect(arguments).c_str(), stderr);
-  if (const Status writable = can_write_mesh(arguments.output); !writable) {
+  if (const Status writable = can_write_mesh(arguments.output, {arguments.model}); !writable) {
     return fail(writable.error());
+  }
+  if (!arguments.json.empty()) {
+    const Status writable =
+        can_write_output(arguments.json, {arguments.model, arguments.output, arguments.density});
+    if (!writable) {
+      return fail(writable.error());
+    }
   }
   const Result<PolygonMesh> mesh = load_mesh(arguments.model);
   if (!mesh) {

@@ -1,6 +1,5 @@
 #include "deform/npz.h"
 
-#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -160,42 +159,14 @@ std::uint64_t NpyHeader::count() const {
   return product;
 }
 
-NpzWriter::NpzWriter(std::filesystem::path path, std::filesystem::path temporary, FilePointer file)
-    : path_(std::move(path)), temporary_(std::move(temporary)), file_(std::move(file)) {}
-
-NpzWriter::NpzWriter(NpzWriter&& other) noexcept
-    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, {})),
-      file_(std::move(other.file_)), entries_(std::move(other.entries_)), offset_(other.offset_) {}
-
-NpzWriter::~NpzWriter() {
-  if (!temporary_.empty()) {
-    file_.reset();
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
-  }
-}
-
 Result<NpzWriter> NpzWriter::create(const std::filesystem::path& path) {
-  std::string name = path.string() + ".XXXXXX";
-  const int descriptor = mkstemp(name.data());
-  if (descriptor < 0) {
-    return Error{ErrorCode::cannot_write,
-                 path.string() + ": cannot be written: " + std::strerror(errno)};
-  }
-  FilePointer file(fdopen(descriptor, "wb"));
-  return NpzWriter(path, name, std::move(file));
-}
-
-Error NpzWriter::failed() const {
-  return {ErrorCode::cannot_write, path_.string() + ": cannot be written: " + std::strerror(errno)};
+  Result<PartFile> file = PartFile::create(path);
+  return file ? Result<NpzWriter>(NpzWriter(*std::move(file))) : file.error();
 }
 
 Status NpzWriter::put(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) {
-    return failed();
-  }
   offset_ += bytes.size();
-  return success();
+  return file_.append(bytes);
 }
 
 Status NpzWriter::begin(std::string_view name, const NpyHeader& header, std::size_t item_size) {
@@ -235,12 +206,7 @@ Status NpzWriter::write(std::span<const std::byte> bytes) {
 Status NpzWriter::end() {
   const Entry& entry = entries_.back();
   const std::string crc = Record().add(entry.crc).text();
-  if (fseeko(file_.get(), static_cast<off_t>(entry.offset + 14), SEEK_SET) != 0 ||
-      std::fwrite(crc.data(), 1, crc.size(), file_.get()) != crc.size() ||
-      fseeko(file_.get(), static_cast<off_t>(offset_), SEEK_SET) != 0) {
-    return failed();
-  }
-  return success();
+  return file_.overwrite(entry.offset + 14, crc);
 }
 
 Status NpzWriter::finish() {
@@ -300,15 +266,7 @@ Status NpzWriter::finish() {
   if (Status s = put(central.text()); !s) {
     return s;
   }
-  // mkstemp made it for us alone; a file made the usual way is for whom the umask allows.
-  const mode_t mask = umask(0);
-  umask(mask);
-  if (fchmod(fileno(file_.get()), 0666 & ~mask) != 0 || std::fclose(file_.release()) != 0 ||
-      std::rename(temporary_.c_str(), path_.c_str()) != 0) {
-    return failed();
-  }
-  temporary_.clear();
-  return success();
+  return file_.commit();
 }
 
 struct NpzReader::Array::Inflater {

@@ -2,6 +2,7 @@
 /// NumPy's .npz files: arrays in a zip archive. Internal to this module.
 #pragma once
 
+#include "io/atomic_file.h"
 #include <cagewright/core/result.h>
 
 #include <cstdint>
@@ -35,10 +36,6 @@ class NpzWriter {
 public:
   static Result<NpzWriter> create(const std::filesystem::path& path);
 
-  NpzWriter(NpzWriter&& other) noexcept;
-  NpzWriter& operator=(NpzWriter&&) = delete;
-  ~NpzWriter();
-
   /// Starts an array of count() items of `item_size` bytes; exactly so many must follow.
   Status begin(std::string_view name, const NpyHeader& header, std::size_t item_size);
   Status write(std::span<const std::byte> bytes);
@@ -65,12 +62,10 @@ private:
     std::uint32_t crc = 0;
   };
 
-  NpzWriter(std::filesystem::path path, std::filesystem::path temporary, FilePointer file);
+  explicit NpzWriter(PartFile file) : file_(std::move(file)) {}
   Status put(std::string_view bytes);
-  [[nodiscard]] Error failed() const;
 
-  std::filesystem::path path_, temporary_;
-  FilePointer file_;
+  PartFile file_;
   std::vector<Entry> entries_;
   std::uint64_t offset_ = 0;
 };

@@ -65,7 +65,7 @@ Error too_many_vertices(const Source& source, std::size_t count) {
   return source.error("has " + std::to_string(count) +
                           " vertices, more than the 4294967295 that can be counted; simplify the "
                           "model",
-                      ErrorCode::too_large);
+                      ErrorCode::unsupported);
 }
 
 bool has_thousands_separators(std::string_view digits) {

@@ -1,5 +1,6 @@
 #include "voxel/voxelize.h"
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "voxel/classify.h"
 #include "voxel/triangle_overlap.h"
@@ -22,8 +23,29 @@ constexpr double round_off = 1e-6;
 // two would be 0.25, which simple ratios of a box's edges hit exactly: then round-off would choose.
 constexpr double least_gap = 0.2327;
 
-// Classification takes up to some 20 bytes for each.
 constexpr double max_voxels = 1 << 28;
+constexpr double bytes_a_voxel = 20; // with what classification takes, at most
+
+// "1.2 GB"
+std::string gigabytes(double bytes) {
+  std::string text = std::to_string(std::ceil(bytes / (1 << 30) * 10) / 10);
+  return text.substr(0, text.find('.') + 2) + " GB";
+}
+
+Status fits_memory(double voxels, int resolution) {
+  const std::string asked = "a grid of " + std::to_string(std::llround(voxels / 1e6)) +
+                            " million voxels (resolution " + std::to_string(resolution) + ")";
+  if (!(voxels <= max_voxels)) {
+    return Error{ErrorCode::too_large,
+                 asked + " is more than the 268 million there may be; lower the resolution"};
+  }
+  if (bytes_a_voxel * voxels > memory_allowed()) {
+    return Error{ErrorCode::too_large, asked + " needs " + gigabytes(bytes_a_voxel * voxels) +
+                                           " of memory, but only " + gigabytes(memory_allowed()) +
+                                           " are allowed; lower the resolution"};
+  }
+  return success();
+}
 
 double fraction(double x) {
   return x - std::floor(x);
@@ -78,11 +100,13 @@ Result<VoxelGrid> make_grid(TriangleView mesh, const OrientedBox& frame,
                             extent.max()[k] / grid.size + reach);
     first[k] = l.first - l.middle;
     voxels *= l.last - l.first + 1;
-    if (!(voxels <= max_voxels)) {
-      return Error{ErrorCode::too_large,
-                   "the grid would need more than 2^28 voxels; lower the resolution"};
+    if (!(l.last - l.first < max_voxels)) {
+      return fits_memory(voxels, options.resolution).error();
     }
     grid.dims[k] = static_cast<int>(l.last - l.first) + 1;
+  }
+  if (Status status = fits_memory(voxels, options.resolution); !status) {
+    return status.error();
   }
   grid.origin = frame.center + frame.axes * (grid.size * first);
   grid.kinds.assign(static_cast<std::size_t>(voxels), VoxelKind::outer);

@@ -33,7 +33,7 @@ struct VoxelizeOptions {
 /// count as triangles without extent. There may be no inner voxel at all.
 ///
 /// Errors: unfit_model (no points, no extent, a coordinate not finite), invalid_option, too_large
-/// (more than 2^28 voxels), cancelled.
+/// (more than 2^28 voxels, or than memory_allowed()), cancelled.
 /// Cost: O(T + F + N) for T triangles, F feature and N all voxels; parallel over triangles. The
 /// same on any number of threads.
 Result<VoxelGrid> voxelize(TriangleView mesh, const OrientedBox& frame,

@@ -407,7 +407,7 @@ class Bind(InAFolder):
     def test_leaves_nothing_when_it_cannot_write(self):
         failed = run("bind", self.model, self.rest, "-o", self.folder / "no" / "w.npz")
         self.assertEqual(failed.returncode, BAD_INPUT)
-        self.assertIn("cannot be written", failed.stderr)
+        self.assertIn("the folder does not exist", failed.stderr)
 
 
 if __name__ == "__main__":
