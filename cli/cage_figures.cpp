@@ -3,6 +3,29 @@
 #include <fmt/format.h>
 
 namespace cagewright::cli {
+namespace {
+
+std::string volume_ratio_text(const CageMetrics& metrics) {
+  if (!(metrics.model_volume > 0)) {
+    return "; the model encloses no volume\n";
+  }
+  switch (metrics.model_volume_method) {
+  case VolumeMethod::none:
+  case VolumeMethod::exact:
+    return fmt::format(", {:.3f} times the model's\n", metrics.volume_ratio);
+  case VolumeMethod::sampled:
+    return fmt::format(", {:.3f} times what the model encloses (it is open: sampled)\n",
+                       metrics.volume_ratio);
+  case VolumeMethod::enclosed:
+    return fmt::format(", {:.3f} times what the model encloses (its parts overlap, double or "
+                       "enclose others: sampled)\n",
+                       metrics.volume_ratio);
+  }
+  return "\n"; // no default above: the compiler points here when a method is added
+}
+
+} // namespace
+
 
 nlohmann::json figures_as_json(const CageMetrics& metrics) {
   return {{"vertices", metrics.vertices},
@@ -26,9 +49,7 @@ std::string figures_as_text(const CageMetrics& metrics) {
   if (metrics.model_volume_method == VolumeMethod::none) {
     text += fmt::format("  volume {:.6g}; the model has no triangles\n", metrics.volume);
   } else {
-    text += fmt::format("  volume {:.6g}, {:.3f} times the model's{}\n", metrics.volume,
-                        metrics.volume_ratio,
-                        metrics.model_volume_method == VolumeMethod::sampled ? " (sampled)" : "");
+    text += fmt::format("  volume {:.6g}", metrics.volume) + volume_ratio_text(metrics);
     text += fmt::format("  distance to the model, % of its diagonal: least {:.4f}, mean {:.3f}, "
                         "greatest {:.3f}\n",
                         100 * metrics.clearance, 100 * metrics.mean_distance,

@@ -136,6 +136,7 @@ Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
     switch (violation.kind) {
     case ViolationKind::bad_corner:
     case ViolationKind::degenerate_face:
+    case ViolationKind::folded_face:
     case ViolationKind::duplicate_face:
       judged.offending_faces.push_back(violation.elements[0]);
       break;

@@ -33,10 +33,15 @@ QString describe(ViolationKind kind, std::size_t count) {
     return plural("Two vertices are in the same place", "%1 pairs of vertices coincide", count);
   case ViolationKind::degenerate_face:
     return plural("A face has no area", "%1 faces have no area", count);
+  case ViolationKind::folded_face:
+    return plural("A face folds over itself", "%1 faces fold over themselves", count);
   case ViolationKind::duplicate_face:
     return plural("A face is there twice", "%1 faces are there twice", count);
   case ViolationKind::open_edge:
     return plural("The cage has an open edge", "The cage has %1 open edges", count);
+  case ViolationKind::t_junction:
+    return plural("A vertex lies on an edge of a face that does not have it",
+                  "%1 vertices lie on edges of faces that do not have them", count);
   case ViolationKind::nonmanifold_edge:
     return plural("An edge has more than two faces", "%1 edges have more than two faces", count);
   case ViolationKind::flipped_edge:

@@ -208,7 +208,10 @@ std::string describe_sizes(const Info& info) {
   std::string text = fmt::format(
       "Diagonal {:.6g}, area {:.6g}, volume {:.6g}{}\n", info.diagonal, info.area,
       info.volume.value,
-      info.volume.method == VolumeMethod::sampled ? " (open or inconsistent: sampled)" : "");
+      info.volume.method == VolumeMethod::sampled    ? " (open or inconsistent: sampled)"
+      : info.volume.method == VolumeMethod::enclosed ? " (enclosed by parts that overlap, double "
+                                                       "or enclose others: sampled)"
+                                                     : "");
   text += "Boxes\n";
   for (const auto& [key, title, box] : info.boxes) {
     const Vec3 size = 2 * box.half;

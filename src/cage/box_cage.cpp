@@ -84,7 +84,8 @@ PolygonMesh with_quads(const TriangleMesh& cage, TriangleView model, bool allow_
         at_fault[violation.elements[1]] = 1;
       } else if (violation.kind == ViolationKind::self_intersection) {
         at_fault[violation.elements[0]] = at_fault[violation.elements[1]] = 1;
-      } else if (violation.kind == ViolationKind::degenerate_face) {
+      } else if (violation.kind == ViolationKind::degenerate_face ||
+                 violation.kind == ViolationKind::folded_face) {
         at_fault[violation.elements[0]] = 1;
       }
     }

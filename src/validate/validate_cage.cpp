@@ -8,11 +8,15 @@
 #include "validate/containment.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
 namespace cagewright {
 namespace {
+
+/// How far off an edge, of its length, a vertex is still called to lie on it: rounding.
+constexpr double t_junction_tolerance = 1e-9;
 
 /// Violations of one stage: all counted, some listed.
 struct Findings {
@@ -61,6 +65,7 @@ public:
     list_vertices();
     list_degenerate_faces();
     list_edges();
+    list_t_junctions();
     if (is_decided()) {
       return false;
     }
@@ -122,18 +127,47 @@ private:
   /// All later stages speak of cage_, which has only these; face_of_ leads back to the given cage.
   void keep_usable_faces() {
     cage_.positions = given_.positions;
+    const WeldedPoints merged = options_.weld ? weld_points(given_.positions) : WeldedPoints();
+    std::vector<Index> corners;
     for (std::size_t f = 0; f < given_.face_count(); ++f) {
       const std::span<const Index> face = given_.face(f);
       const bool usable = face.size() >= 3 && std::all_of(face.begin(), face.end(), [&](Index v) {
                             return v < given_.positions.size();
                           });
       if (usable) {
-        cage_.add_face(face);
+        corners.assign(face.begin(), face.end());
+        if (options_.weld) {
+          for (Index& v : corners) {
+            v = merged.first_with[merged.point_of[v]];
+          }
+        }
+        cage_.add_face(corners);
         face_of_.push_back(static_cast<Index>(f));
       } else {
         add({ViolationKind::bad_corner, {static_cast<Index>(f), Violation::none}});
       }
     }
+  }
+
+  /// How many vertices the corners name.
+  static std::vector<char> used_vertices(std::span<const Index> corners, std::size_t count) {
+    std::vector<char> used(count, 0);
+    for (const Index v : corners) {
+      if (v < count) {
+        used[v] = 1;
+      }
+    }
+    return used;
+  }
+
+  /// What welding has merged and left out.
+  void count_welded(const std::vector<char>& used) {
+    const std::vector<char> before = used_vertices(given_.corners(), given_.positions.size());
+    const auto count = [](const std::vector<char>& flags) {
+      return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
+    };
+    report_.merged_vertices = count(before) - count(used);
+    report_.loose_vertices = before.size() - count(before);
   }
 
   void list_vertices() {
@@ -144,9 +178,10 @@ private:
              cage_.positions[v]});
       }
     }
-    std::vector<char> used(cage_.positions.size(), 0);
-    for (const Index v : cage_.corners()) {
-      used[v] = 1;
+    const std::vector<char> used = used_vertices(cage_.corners(), cage_.positions.size());
+    if (options_.weld) {
+      count_welded(used);
+      return;
     }
     std::vector<Index> first_used(parts_.welded.positions.size(), Violation::none);
     for (Index v = 0; v < used.size(); ++v) {
@@ -195,6 +230,60 @@ private:
     }
   }
 
+  /// Names the vertices that lie on open edges of others: where a face was cut and its neighbor was
+  /// not. The edges are open all the same, so that this may be judged in doubles.
+  void list_t_junctions() {
+    if (topology_.boundary_edges.empty()) {
+      return;
+    }
+    std::vector<Triangle> edges; // without area: for the hierarchy
+    std::map<EdgeVertices, Index> face_of_edge;
+    for (const EdgeVertices& edge : topology_.boundary_edges) {
+      edges.push_back({edge[0], edge[1], edge[1]});
+      face_of_edge.emplace(edge, Violation::none);
+    }
+    for (Index f = 0; f < cage_.face_count(); ++f) {
+      const std::span<const Index> face = cage_.face(f);
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        const auto found = face_of_edge.find({face[k], face[(k + 1) % face.size()]});
+        if (found != face_of_edge.end()) {
+          found->second = f;
+        }
+      }
+    }
+    const TriangleBvh bvh({cage_.positions, edges});
+    std::vector<Index> ends;
+    for (const EdgeVertices& edge : topology_.boundary_edges) {
+      ends.insert(ends.end(), edge.begin(), edge.end());
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    for (const Index v : ends) {
+      const Vec3& p = cage_.positions[v];
+      if (!p.allFinite()) {
+        continue;
+      }
+      const Vec3 reach = Vec3::Constant(t_junction_tolerance * (1 + p.cwiseAbs().maxCoeff()));
+      bvh.visit_box(Box3(p - reach, p + reach), [&](Index i) {
+        const EdgeVertices& edge = topology_.boundary_edges[i];
+        if (is_within_edge(p, cage_.positions[edge[0]], cage_.positions[edge[1]])) {
+          add({ViolationKind::t_junction, {v, face_of_[face_of_edge.at(edge)]}, p});
+          return false;
+        }
+        return true;
+      });
+    }
+  }
+
+  /// Strictly between the ends, and on the line but for rounding.
+  static bool is_within_edge(const Vec3& p, const Vec3& a, const Vec3& b) {
+    const Vec3 along = b - a;
+    const double length = along.norm();
+    const double at = (p - a).dot(along) / length;
+    return at > t_junction_tolerance * length && at < (1 - t_junction_tolerance) * length &&
+           (p - a - at / length * along).norm() <= t_junction_tolerance * length;
+  }
+
   void find_self_intersections() {
     const Findings findings = parallel_reduce_ordered(
         0, cage_.face_count(), 64, Findings(),
@@ -207,9 +296,27 @@ private:
         },
         [&](Findings& all, const Findings& part) { all.append(part, options_.max_listed); });
     take(ViolationKind::self_intersection, findings);
+    find_folded_faces();
   }
 
-  /// The faces from f on that face f crosses, itself included, each once.
+  void find_folded_faces() {
+    for (Index f = 0; f < cage_.face_count() && !progress_.cancelled(); ++f) {
+      bool folded = false;
+      for (std::size_t i = parts_.first_of_face[f]; i < parts_.first_of_face[f + 1]; ++i) {
+        for (std::size_t k = i + 1; k < parts_.first_of_face[f + 1] && !folded; ++k) {
+          const CagePart& a = parts_.parts[i];
+          const CagePart& b = parts_.parts[k];
+          folded = !a.is_degenerate && !b.is_degenerate && (a.cuttings & b.cuttings) != 0 &&
+                   parts_cross(parts_, a, b);
+        }
+      }
+      if (folded) {
+        add_face(ViolationKind::folded_face, f);
+      }
+    }
+  }
+
+  /// The faces beyond f that face f crosses, each once.
   void find_crossings_of(Index f, Findings& found) const {
     std::map<Index, Vec3> crossed;
     for (std::size_t i = parts_.first_of_face[f]; i < parts_.first_of_face[f + 1]; ++i) {
@@ -223,9 +330,7 @@ private:
       box.extend(corners[2]);
       parts_.bvh.visit_box(box, [&](Index k) {
         const CagePart& other = parts_.parts[k];
-        const bool same_face = other.face == f;
-        if (other.face < f || other.is_degenerate || (same_face && k <= i) ||
-            (same_face && (other.cuttings & part.cuttings) == 0) || crossed.contains(other.face)) {
+        if (other.face <= f || other.is_degenerate || crossed.contains(other.face)) {
           return true;
         }
         if (parts_cross(parts_, part, other)) {
@@ -251,15 +356,24 @@ private:
     closure_ = closure_of(first_cutting);
     weights_.assign(parts_.parts.size(), 1);
     const std::vector<Index> first_faces = first_faces_of_pieces();
+    const bool has_sides = closure_ == Closure::oriented; // else outward means nothing
+    std::vector<char> nested(first_faces.size(), 0);
     bool has_piece = false;
-    for (const Index face : first_faces) {
-      if (face != Violation::none && has_piece && !options_.allow_pieces) {
+    for (std::size_t piece = 0; piece < first_faces.size(); ++piece) {
+      const Index face = first_faces[piece];
+      if (face == Violation::none) {
+        continue;
+      }
+      nested[piece] = has_sides && is_nested(piece, face) ? 1 : 0;
+      const bool is_allowed =
+          options_.allow_pieces || (options_.allow_inner_shells && nested[piece] != 0);
+      if (has_piece && !is_allowed) {
         add_face(ViolationKind::several_pieces, face);
       }
-      has_piece = has_piece || face != Violation::none;
+      has_piece = has_piece || !(options_.allow_inner_shells && nested[piece] != 0);
     }
-    if (closure_ != Closure::oriented) {
-      return; // outward means nothing
+    if (!has_sides) {
+      return;
     }
     std::vector<std::vector<Triangle>> triangles(first_faces.size());
     for (const CagePart& part : parts_.parts) {
@@ -271,9 +385,15 @@ private:
       if (first_faces[piece] == Violation::none) {
         continue;
       }
-      if (is_nested(piece, first_faces[piece])) {
+      const int sign = volume_sign({parts_.welded.positions, triangles[piece]});
+      if (nested[piece] != 0 && options_.allow_inner_shells) {
+        inner_.push_back(static_cast<Index>(piece));
+        if (sign > 0) {
+          add_face(ViolationKind::inverted_piece, first_faces[piece]);
+        }
+      } else if (nested[piece] != 0) {
         add_face(ViolationKind::nested_piece, first_faces[piece]);
-      } else if (volume_sign({parts_.welded.positions, triangles[piece]}) < 0) {
+      } else if (sign < 0) {
         add_face(ViolationKind::inverted_piece, first_faces[piece]);
         inverted_.push_back(static_cast<Index>(piece));
       }
@@ -281,8 +401,10 @@ private:
     // The model is judged as if an inverted piece had been turned: one defect, one report.
     for (std::size_t i = 0; i < weights_.size(); ++i) {
       const Index piece = topology_.component_of_face[parts_.parts[i].face];
-      weights_[i] =
-          std::find(inverted_.begin(), inverted_.end(), piece) != inverted_.end() ? -1 : 1;
+      const auto is_among = [&](const std::vector<Index>& pieces) {
+        return std::find(pieces.begin(), pieces.end(), piece) != pieces.end();
+      };
+      weights_[i] = is_among(inner_) ? 0 : is_among(inverted_) ? -1 : 1;
     }
   }
 
@@ -362,9 +484,12 @@ private:
   /// group is located.
   void locate_vertices(TriangleView model, const std::vector<char>& touches) {
     const std::vector<Index> group = groups(model, touches);
+    const std::vector<char> judged = judged_vertices(model);
+    report_.loose_model_vertices =
+        static_cast<std::size_t>(std::count(judged.begin(), judged.end(), 0));
     std::vector<Index> leaders;
     for (Index v = 0; v < group.size(); ++v) {
-      if (group[v] == v) {
+      if (group[v] == v && judged[v] != 0) {
         leaders.push_back(v);
       }
     }
@@ -386,6 +511,18 @@ private:
       }
     }
     report_.containment_approximate = closure_ == Closure::open;
+  }
+
+  /// Those of triangles; of a cloud of points, all.
+  static std::vector<char> judged_vertices(TriangleView model) {
+    if (model.triangles.empty()) {
+      return std::vector<char>(model.positions.size(), 1);
+    }
+    std::vector<char> judged(model.positions.size(), 0);
+    for (const Triangle& t : model.triangles) {
+      judged[t[0]] = judged[t[1]] = judged[t[2]] = 1;
+    }
+    return judged;
   }
 
   /// For each model vertex, the first of its group.
@@ -416,6 +553,7 @@ private:
   Closure closure_ = Closure::open;
   std::vector<int> weights_;    // of the parts' crossings
   std::vector<Index> inverted_; // pieces
+  std::vector<Index> inner_;    // pieces within others, where they are allowed
 };
 
 } // namespace
@@ -434,10 +572,14 @@ std::string_view name_of(ViolationKind kind) {
     return "coincident_vertices";
   case ViolationKind::degenerate_face:
     return "degenerate_face";
+  case ViolationKind::folded_face:
+    return "folded_face";
   case ViolationKind::duplicate_face:
     return "duplicate_face";
   case ViolationKind::open_edge:
     return "open_edge";
+  case ViolationKind::t_junction:
+    return "t_junction";
   case ViolationKind::nonmanifold_edge:
     return "nonmanifold_edge";
   case ViolationKind::flipped_edge:

@@ -10,8 +10,11 @@ namespace cagewright {
 
 enum class VolumeMethod {
   none,    ///< there are no triangles
-  exact,   ///< the mesh is closed and oriented once equal positions are merged: its signed volume
-  sampled, ///< it is not: the share of sample points that rays find inside
+  exact,    ///< the mesh is closed and oriented once equal positions are merged, and winds round
+            ///< what it encloses just once: its signed volume
+  sampled,  ///< it is open or inconsistent: the share of sample points that are enclosed
+  enclosed, ///< it is closed, but overlaps, is doubled or has hollows: the share of sample points
+            ///< that it encloses, each counted once
 };
 
 /// The method's name as it stands in JSON.
@@ -22,15 +25,15 @@ struct ModelVolume {
   VolumeMethod method = VolumeMethod::none;
 };
 
-/// The volume that a model encloses.
+/// The volume that a model encloses: 0 where it encloses none.
 ///
-/// Sampled means: a point in the middle of each cell of a grid of 96 along the longest side of the
-/// bounding box counts as inside when at least four of the six rays from it along the axes cross
-/// the surface unequally often from either side. That closes holes, and does not mind a model that
-/// is inverted as a whole. The error is below about 1 % for a compact model; flat sheets have none,
-/// bent ones what they half surround.
+/// Samples are the middles of the cells of a grid of 96 along the longest side of the bounding box.
+/// One is enclosed when no way from cell to cell leads from it to the outside without crossing the
+/// surface; or when at least four of the six rays from it along the axes cross the surface unequally
+/// often from either side, which closes holes. Neither minds the orientation of the whole. The error
+/// is below about 1 % for a compact model; flat sheets have none, bent ones what they half surround.
 ///
-/// Cost: O(T) and a million votes.
+/// Cost: O(T) and a million samples.
 ModelVolume model_volume(TriangleView model);
 
 } // namespace cagewright

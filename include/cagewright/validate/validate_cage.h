@@ -24,8 +24,10 @@ enum class ViolationKind {
   unused_vertex,       ///< no face uses it: vertex
   coincident_vertices, ///< two used vertices at exactly the same position: vertex, vertex
   degenerate_face,     ///< names a vertex twice, or a triangle of it has no area: face
+  folded_face,         ///< meets itself, along one of its diagonals at least: face
   duplicate_face,      ///< has the corners of an earlier one, in any order: face
   open_edge,           ///< an edge of one face only: vertex, vertex
+  t_junction,          ///< a vertex on an open edge of a face that does not have it: vertex, face
   nonmanifold_edge,    ///< an edge of three or more faces: vertex, vertex
   flipped_edge,        ///< two neighbors run along it the same way, one is flipped: vertex, vertex
   nonmanifold_vertex,  ///< its faces touch in this point only: vertex
@@ -56,6 +58,13 @@ struct Violation {
 struct ValidateOptions {
   /// Accept a cage of several closed pieces, none within another.
   bool allow_pieces = false;
+  /// Accept closed pieces within others, where they are oriented inward. What they enclose counts as
+  /// inside the cage, too.
+  bool allow_inner_shells = false;
+  /// Judge vertices at exactly equal positions as one, as many exporters split them, and leave out
+  /// vertices that no face uses; the report counts both. Elements of violations are then the first
+  /// vertices at their positions.
+  bool weld = false;
   /// How many violations of each kind are listed; all are counted.
   std::size_t max_listed = 20;
   /// Stop after the first check that fails: for those who only ask whether the cage is valid. The
@@ -70,6 +79,10 @@ struct ValidityReport {
   /// generalized winding number, in doubles.
   bool containment_approximate = false;
 
+  std::size_t merged_vertices = 0;      ///< of the cage, by ValidateOptions::weld
+  std::size_t loose_vertices = 0;       ///< of the cage, left out by ValidateOptions::weld
+  std::size_t loose_model_vertices = 0; ///< of no triangle of the model: they are not judged
+
   [[nodiscard]] bool valid() const;
   [[nodiscard]] std::size_t count(ViolationKind kind) const {
     return counts[static_cast<std::size_t>(kind)];
@@ -77,8 +90,9 @@ struct ValidityReport {
 };
 
 /// Judges a cage: closed, edge- and vertex-manifold, consistently oriented outward, without
-/// degenerate faces, unused vertices or self-intersections, in one piece; every model vertex (of a
-/// face or not) strictly inside; no model face touching a cage face.
+/// degenerate faces, unused vertices or self-intersections, in one piece; every model vertex of a
+/// triangle strictly inside (of a model without triangles, every vertex); no model face touching a
+/// cage face.
 ///
 /// All of it is decided exactly on the coordinates as they are. Faces that share corners by index
 /// or by position may touch there and nowhere else. A quad must pass under both of its diagonals:
