@@ -1,4 +1,5 @@
 #include "binding.h"
+#include "cage_words.h"
 #include "load.h"
 
 #include <cagewright/mesh/triangulate.h>
@@ -55,11 +56,18 @@ Result<ModelAndCage> read_model_and_cage(const BindingOptions& options) {
 
 Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Session& session) {
   const Triangulation triangles = triangulate(meshes.model);
-  const Result<ValidityReport> report =
-      validate_cage(meshes.cage, TriangleView{meshes.model.positions, triangles.triangles},
-                    {.allow_pieces = true, .max_listed = 0}, session.progress());
+  const TriangleView model{meshes.model.positions, triangles.triangles};
+  const Result<ValidityReport> report = validate_cage(
+      meshes.cage, model,
+      {.allow_pieces = true, .allow_inner_shells = true, .weld = true, .max_listed = 0},
+      session.progress());
   if (!report) {
     return report.error();
+  }
+  for (const FileNote& note : hints(*report, meshes.cage, model, {options.model, options.cage})) {
+    if (note.code != "loose_model_vertices") { // they move along: nothing to warn of
+      warn(note.message);
+    }
   }
   if (report->valid()) {
     return success();

@@ -26,7 +26,6 @@ std::string volume_ratio_text(const CageMetrics& metrics) {
 
 } // namespace
 
-
 nlohmann::json figures_as_json(const CageMetrics& metrics) {
   return {{"vertices", metrics.vertices},
           {"faces", metrics.faces},

@@ -2,12 +2,15 @@
 #include "load.h"
 #include "session.h"
 
+#include "io/source.h"
 #include <cagewright/deform/weights_file.h>
 
 #include <fmt/format.h>
 
 #include <chrono>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace cagewright::cli {
@@ -16,13 +19,31 @@ namespace {
 struct Options {
   BindingOptions binding;
   std::string output;
+  std::optional<WeightsFormat> format; // none: as the output's extension says
 };
+
+/// As asked for, or as the name says. vertex-groups is JSON, too: a name cannot say it.
+Result<WeightsFormat> format_of(const Options& options) {
+  if (options.format) {
+    return *options.format;
+  }
+  if (const auto format = weights_format_of_name(options.output)) {
+    return *format;
+  }
+  return Error{ErrorCode::invalid_option,
+               one_line(options.output) + ": the extension names no format of weights; use .npz, "
+                                          ".csv, .json or .dmat, or say --format"};
+}
 
 int run(const Options& options, const Session& session) {
   if (const Status writable =
           can_write_output(options.output, {options.binding.model, options.binding.cage});
       !writable) {
     return fail(writable.error());
+  }
+  const Result<WeightsFormat> format = format_of(options);
+  if (!format) {
+    return fail(format.error());
   }
   const Result<ModelAndCage> meshes = read_model_and_cage(options.binding);
   if (!meshes) {
@@ -37,7 +58,7 @@ int run(const Options& options, const Session& session) {
   }
   const auto start = std::chrono::steady_clock::now();
   const Result<BoundCounts> counts = bind_to_file(*solver, meshes->model.positions, meshes->cage,
-                                                  options.output, session.progress());
+                                                  options.output, *format, session.progress());
   if (!counts) {
     return fail(counts.error());
   }
@@ -53,10 +74,25 @@ int run(const Options& options, const Session& session) {
 
 void add_bind(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand(
-      "bind", "Compute how a model follows its cage, and store it: a file for numpy.load");
+      "bind", "Compute how a model follows its cage, and store it: for deform --weights, NumPy, "
+              "spreadsheets, or groups of vertices");
   auto options = std::make_shared<Options>();
   add_binding_options(*command, options->binding);
-  command->add_option("-o,--output", options->output, "The file to write, weights.npz")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "The file to write: .npz (numpy.load), .csv, .json or .dmat (libigl)")
+      ->required();
+  command
+      ->add_option("--format", options->format,
+                   "Instead of what the extension says: npz, csv, json, dmat, or vertex-groups "
+                   "(JSON for scripts in Blender and Maya: a group for each vertex of the cage)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, WeightsFormat>{{"npz", WeightsFormat::npz},
+                                               {"csv", WeightsFormat::csv},
+                                               {"json", WeightsFormat::json},
+                                               {"dmat", WeightsFormat::dmat},
+                                               {"vertex-groups", WeightsFormat::vertex_groups}}))
+      ->option_text("FORMAT");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };
   });

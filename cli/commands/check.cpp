@@ -1,95 +1,33 @@
 #include "cage_figures.h"
+#include "cage_words.h"
 #include "json.h"
 #include "load.h"
 #include "session.h"
 
 #include <cagewright/mesh/triangulate.h>
+#include <cagewright/mesh/weld.h>
 #include <cagewright/validate/cage_metrics.h>
 #include <cagewright/validate/validate_cage.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
+#include <charconv>
+#include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace cagewright::cli {
 namespace {
 
 struct Options {
-  std::string model;
-  std::string cage;
+  JudgedFiles files;
   std::string json;
   ValidateOptions validate;
 };
 
-/// What the elements of a violation are, in words.
-struct Wording {
-  const char* title;  // after the count
-  const char* first;  // before the first element
-  const char* second; // before the second, if there is one
-};
-
-Wording wording_of(ViolationKind kind) {
-  switch (kind) {
-  case ViolationKind::no_faces:
-    return {"the cage has no usable face", "", ""};
-  case ViolationKind::bad_corner:
-    return {"faces with fewer than three corners, or corners that are no vertices", "face", ""};
-  case ViolationKind::not_finite:
-    return {"cage vertices whose position is not a number", "vertex", ""};
-  case ViolationKind::unused_vertex:
-    return {"cage vertices that no face uses", "vertex", ""};
-  case ViolationKind::coincident_vertices:
-    return {"cage vertices on top of another", "vertices", "and"};
-  case ViolationKind::degenerate_face:
-    return {"degenerate cage faces", "face", ""};
-  case ViolationKind::duplicate_face:
-    return {"cage faces that repeat an earlier one", "face", ""};
-  case ViolationKind::open_edge:
-    return {"open edges", "edge", "-"};
-  case ViolationKind::nonmanifold_edge:
-    return {"edges of more than two faces", "edge", "-"};
-  case ViolationKind::flipped_edge:
-    return {"edges between faces of opposite orientation", "edge", "-"};
-  case ViolationKind::nonmanifold_vertex:
-    return {"vertices where the cage touches itself in a point", "vertex", ""};
-  case ViolationKind::self_intersection:
-    return {"pairs of cage faces that cross or touch", "faces", "and"};
-  case ViolationKind::inverted_piece:
-    return {"closed pieces oriented inward", "piece with face", ""};
-  case ViolationKind::several_pieces:
-    return {"pieces too many (--allow-pieces accepts them)", "piece with face", ""};
-  case ViolationKind::nested_piece:
-    return {"closed pieces within another", "piece with face", ""};
-  case ViolationKind::vertex_outside:
-    return {"model vertices outside the cage", "model vertex", ""};
-  case ViolationKind::vertex_on_cage:
-    return {"model vertices on the cage", "model vertex", "on cage face"};
-  case ViolationKind::face_contact:
-    return {"contacts of model faces and cage faces", "model face", "and cage face"};
-  }
-  return {"", "", ""}; // no default above: the compiler points here when a kind is added
-}
-
-std::string describe(const Violation& violation) {
-  const Wording wording = wording_of(violation.kind);
-  std::string text;
-  if (violation.elements[0] != Violation::none) {
-    text += fmt::format("    {} {}", wording.first, violation.elements[0]);
-  }
-  if (violation.elements[1] != Violation::none) {
-    text += fmt::format(" {} {}", wording.second, violation.elements[1]);
-  }
-  if (!text.empty() && violation.kind != ViolationKind::bad_corner) {
-    text += fmt::format("  at ({}, {}, {})", violation.place.x(), violation.place.y(),
-                        violation.place.z());
-  }
-  return text.empty() ? text : text + "\n";
-}
-
-std::string describe(const ValidityReport& report) {
+std::string describe(const ValidityReport& report, const JudgedFiles& files) {
   std::string text =
       "not valid (vertices and faces are counted from 0, in the order of the files)\n";
   std::size_t next = 0;
@@ -98,41 +36,55 @@ std::string describe(const ValidityReport& report) {
     if (report.counts[k] == 0) {
       continue;
     }
-    text += fmt::format("  {} {}{}\n", report.counts[k], wording_of(kind).title,
+    text += fmt::format("  {}{}\n", headline(kind, report.counts[k]),
                         kind == ViolationKind::vertex_outside && report.containment_approximate
                             ? " (the cage is not closed: by its winding number, approximately)"
                             : "");
     std::size_t listed = 0;
     for (; next < report.violations.size() && report.violations[next].kind == kind; ++next) {
-      text += describe(report.violations[next]);
+      const std::string violation = cagewright::cli::describe(report.violations[next]);
+      text += violation.empty() ? "" : "    " + violation + "\n";
       ++listed;
     }
     if (listed < report.counts[k] && kind != ViolationKind::no_faces) {
-      text += fmt::format("    ... and {} more\n", report.counts[k] - listed);
+      text +=
+          fmt::format("    ... and {} more (--list all shows them)\n", report.counts[k] - listed);
     }
+    text += fmt::format("    remedy: {}\n", remedy(kind, files));
   }
   return text;
 }
 
-nlohmann::json to_json(const ValidityReport& report) {
+nlohmann::json to_json(const Violation& violation, const JudgedFiles& files) {
+  nlohmann::json elements = nlohmann::json::array();
+  for (const Index element : violation.elements) {
+    if (element != Violation::none) {
+      elements.push_back(element);
+    }
+  }
+  const std::string what = headline(violation.kind, 1).substr(2); // without the count
+  const std::string where = describe(violation);
+  return {{"kind", name_of(violation.kind)},
+          {"elements", elements},
+          {"place", json_of(violation.place)},
+          {"file", file_of(violation.kind, files)},
+          {"message", where.empty() ? what : what + ": " + where},
+          {"remedy", remedy(violation.kind, files)}};
+}
+
+nlohmann::json to_json(const ValidityReport& report, const JudgedFiles& files) {
   nlohmann::json json = {{"valid", report.valid()},
                          {"containment_approximate", report.containment_approximate},
+                         {"merged_vertices", report.merged_vertices},
+                         {"loose_vertices", report.loose_vertices},
+                         {"loose_model_vertices", report.loose_model_vertices},
                          {"counts", nlohmann::json::object()},
                          {"violations", nlohmann::json::array()}};
   for (std::size_t k = 0; k < violation_kinds; ++k) {
     json["counts"][name_of(static_cast<ViolationKind>(k))] = report.counts[k];
   }
   for (const Violation& violation : report.violations) {
-    nlohmann::json elements = nlohmann::json::array();
-    for (const Index element : violation.elements) {
-      if (element != Violation::none) {
-        elements.push_back(element);
-      }
-    }
-    const Vec3& at = violation.place;
-    json["violations"].push_back({{"kind", name_of(violation.kind)},
-                                  {"elements", elements},
-                                  {"place", {at.x(), at.y(), at.z()}}});
+    json["violations"].push_back(to_json(violation, files));
   }
   return json;
 }
@@ -147,11 +99,11 @@ void name_model_faces(ValidityReport& report, const Triangulation& model) {
 }
 
 int run(const Options& options, const Session& session) {
-  const auto model = load_mesh(options.model);
+  const auto model = load_mesh(options.files.model);
   if (!model) {
     return fail(model.error());
   }
-  const auto cage = load_mesh(options.cage);
+  const auto cage = load_mesh(options.files.cage);
   if (!cage) {
     return fail(cage.error());
   }
@@ -162,17 +114,37 @@ int run(const Options& options, const Session& session) {
     return fail(report.error());
   }
   name_model_faces(*report, triangles);
-  const CageMetrics metrics = measure_cage(*cage, view);
+  const std::vector<FileNote> notes = hints(*report, *cage, view, options.files);
+  const CageMetrics metrics = measure_cage(report->merged_vertices > 0 ? weld(*cage) : *cage, view);
   if (!options.json.empty()) {
-    nlohmann::json json = to_json(*report);
+    nlohmann::json json = to_json(*report, options.files);
     json["cage"] = figures_as_json(metrics);
     json["notes"] = notes_as_json();
+    for (const FileNote& note : notes) {
+      json["notes"].push_back({{"code", note.code}, {"message", note.message}});
+    }
     if (const Status status = write_json(options.json, json, 2); !status) {
       return fail(status.error());
     }
   }
-  session.say(report->valid() ? "valid\n" + figures_as_text(metrics) : describe(*report));
+  std::string text =
+      report->valid() ? "valid\n" + figures_as_text(metrics) : describe(*report, options.files);
+  for (const FileNote& note : notes) {
+    text += "note: " + note.message + "\n";
+  }
+  session.say(text);
   return report->valid() ? done : found_faults;
+}
+
+/// A number, or "all".
+std::string parse_count(const std::string& text, std::size_t& count) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (text == "all") {
+    count = std::numeric_limits<std::size_t>::max();
+  } else if (error != std::errc() || end != text.data() + text.size()) {
+    return text + " is no count; give a number, or all";
+  }
+  return {};
 }
 
 } // namespace
@@ -182,13 +154,26 @@ void add_check(CLI::App& app, Session& session) {
       "check",
       "Judge a cage: valid, or what is wrong with it and where. Exit code 0 only if valid");
   auto options = std::make_shared<Options>();
-  command->add_option("model", options->model, "The model that the cage is for")->required();
-  command->add_option("cage", options->cage, "The cage to judge")->required();
+  options->validate.weld = true;
+  command->add_option("model", options->files.model, "The model that the cage is for")->required();
+  command->add_option("cage", options->files.cage, "The cage to judge")->required();
   command->add_option("--json", options->json, "Write the verdict to this file as JSON");
   command->add_flag("--allow-pieces", options->validate.allow_pieces,
                     "Accept a cage of several closed pieces");
-  command->add_option("--max-listed", options->validate.max_listed,
-                      "Violations of each kind to list; all are counted");
+  command->add_flag("--allow-inner-shells", options->validate.allow_inner_shells,
+                    "Accept closed pieces within others, oriented inward, as some use to steer an "
+                    "eye; what they enclose counts as inside");
+  command
+      ->add_option_function<std::string>(
+          "--list,--max-listed",
+          [options](const std::string& text) {
+            const std::string wrong = parse_count(text, options->validate.max_listed);
+            if (!wrong.empty()) {
+              throw CLI::ValidationError("--list", wrong);
+            }
+          },
+          "Violations of each kind to list, or all; all are counted")
+      ->option_text("N|all=20");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };
   });

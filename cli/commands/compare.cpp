@@ -51,8 +51,8 @@ Result<Compared> describe(const std::string& path, TriangleView model, const Mod
   for (std::size_t f = 0; f < cage->face_count(); ++f) {
     compared.quads += cage->face(f).size() == 4 ? 1 : 0;
   }
-  Result<ValidityReport> report =
-      validate_cage(*cage, model, {.allow_pieces = true, .max_listed = 0}, progress.part(0, 0.4));
+  Result<ValidityReport> report = validate_cage(
+      *cage, model, {.allow_pieces = true, .weld = true, .max_listed = 0}, progress.part(0, 0.4));
   if (!report) {
     return report.error();
   }

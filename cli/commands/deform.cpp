@@ -4,6 +4,8 @@
 
 #include "deform/apply.h"
 #include "io/linked_files.h"
+#include "io/source.h"
+#include <cagewright/deform/match_pose.h>
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
@@ -120,15 +122,21 @@ Status can_write_all(const Options& options, const std::vector<Pose>& poses) {
 Result<std::vector<std::vector<Vec3>>> read_poses(const std::vector<Pose>& poses,
                                                   const PolygonMesh& rest) {
   std::vector<std::vector<Vec3>> positions;
+  std::set<std::string> noted;
   for (const Pose& pose : poses) {
     Result<PolygonMesh> cage = load_mesh(pose.path);
     if (!cage) {
       return cage.error();
     }
-    if (Status status = same_topology(rest, *cage, pose.path); !status) {
-      return status.error();
+    Result<MatchedPose> matched = match_pose(rest, *cage, one_line(pose.path));
+    if (!matched) {
+      return matched.error();
     }
-    positions.push_back(std::move(cage->positions));
+    if (!matched->note.empty() && noted.insert(matched->note).second) { // once for a sequence
+      const FileNote note{"pose_matched", one_line(pose.path) + ": " + matched->note};
+      tell({&note, 1});
+    }
+    positions.push_back(std::move(matched->positions));
   }
   return positions;
 }

@@ -2,16 +2,21 @@
 
 #include "load.h"
 
+#include "io/source.h"
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/mesh/weld.h>
+#include <cagewright/validate/fit.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace cagewright::cli {
 namespace {
@@ -20,7 +25,25 @@ struct Options {
   std::string input;
   std::string output;
   bool triangulate = false;
+  std::string fit; // the model; empty: not asked for
 };
+
+/// The cage changed as a whole so that it encloses the model of --fit.
+Result<PolygonMesh> fitted(PolygonMesh cage, const Options& options, const Session& session) {
+  const Result<TriangleMesh> model = load_triangles(options.fit);
+  if (!model) {
+    return model.error();
+  }
+  const std::optional<CageFit> fit = fit_cage(cage, *model);
+  if (!fit) {
+    warn(one_line(options.input) +
+         ": no scale, turn or shift would make this cage fit better; it is left as it is");
+    return cage;
+  }
+  session.say(fmt::format("{}: {}; {:.0f} % of the model's vertices are inside now\n",
+                          options.input, fit->description, 100 * fit->inside));
+  return (*fit)(std::move(cage));
+}
 
 /// Faces without the corners that merging has made one, as far as they keep three, and vertices
 /// that faces use. Groups and colours stay.
@@ -73,14 +96,22 @@ PolygonMesh merge(const PolygonMesh& mesh, bool cut_faces) {
 }
 
 int run(const Options& options, const Session& session) {
-  if (const Status writable = can_write_mesh(options.output, {options.input}); !writable) {
+  if (const Status writable = can_write_mesh(options.output, {options.input, options.fit});
+      !writable) {
     return fail(writable.error());
   }
   const Result<PolygonMesh> mesh = load_mesh(options.input);
   if (!mesh) {
     return fail(mesh.error());
   }
-  const PolygonMesh welded = merge(*mesh, options.triangulate);
+  PolygonMesh welded = merge(*mesh, options.triangulate);
+  if (!options.fit.empty()) {
+    Result<PolygonMesh> moved = fitted(std::move(welded), options, session);
+    if (!moved) {
+      return fail(moved.error());
+    }
+    welded = *std::move(moved);
+  }
   if (const Status written = write_mesh(welded, options.output); !written) {
     return fail(written.error());
   }
@@ -102,6 +133,9 @@ void add_weld(CLI::App& app, Session& session) {
   command->add_option("output", options->output, "OBJ, PLY or OFF file to write")->required();
   command->add_flag("--triangulate", options->triangulate,
                     "Cut all faces into triangles, concave ones along diagonals inside them");
+  command->add_option("--fit", options->fit,
+                      "A model: scale, turn or shift the cage as a whole so that it encloses it, "
+                      "where it is in another unit, has another up axis, or is elsewhere");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };
   });

@@ -2,12 +2,18 @@
 
 #include "core/parallel.h"
 #include "deform/npz.h"
+#include "deform/weights_text.h"
+#include "io/read_file.h"
+#include "io/source.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cstdlib>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace cagewright {
@@ -86,6 +92,36 @@ Status add_identity(NpzWriter& file, std::span<const Vec3> points, const Polygon
   }
   return add_faces(file, cage);
 }
+
+class NpzSink : public RowSink {
+public:
+  static Result<std::unique_ptr<RowSink>>
+  create(std::span<const Vec3> points, const PolygonMesh& cage, const std::filesystem::path& path) {
+    Result<NpzWriter> file = NpzWriter::create(path);
+    if (!file) {
+      return file.error();
+    }
+    if (Status s = add_identity(*file, points, cage); !s) {
+      return s.error();
+    }
+    const std::size_t width = cage.positions.size();
+    if (Status s = file->begin("weights", {"<f4", {points.size(), width}}, sizeof(float)); !s) {
+      return s.error();
+    }
+    return std::unique_ptr<RowSink>(new NpzSink(*std::move(file)));
+  }
+
+  Status rows(std::span<const float> block) override { return file_.write(std::as_bytes(block)); }
+  Status finish() override {
+    Status status = file_.end();
+    return status ? file_.finish() : status;
+  }
+
+private:
+  explicit NpzSink(NpzWriter file) : file_(std::move(file)) {}
+
+  NpzWriter file_;
+};
 
 /// The rows of the points, one after the other.
 BoundCounts solve_rows(const MeanValueSolver& solver, std::span<const Vec3> points,
@@ -219,6 +255,57 @@ Result<FloatWeights> read_matrix(NpzReader& file, std::size_t cage_vertices) {
   return weights;
 }
 
+/// The first bytes of a file, enough to tell its format. Errors: cannot_open.
+Result<FileBytes> read_start(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return Error{ErrorCode::cannot_open,
+                 one_line(path.string()) +
+                     (error ? ": there is no such file; check the name and the folder"
+                            : ": not a regular file; give the file that bind has written")};
+  }
+  const FilePointer file(std::fopen(path.c_str(), "rb"));
+  if (!file) {
+    return Error{ErrorCode::cannot_open,
+                 one_line(path.string()) + ": cannot be read; check its permissions"};
+  }
+  std::array<char, 256> start{};
+  const std::size_t count = std::fread(start.data(), 1, start.size(), file.get());
+  return FileBytes(std::string_view(start.data(), count));
+}
+
+/// Whether weights reproduce the points from the cage at rest, as all coordinates do.
+Status gives(const FloatWeights& weights, std::span<const Vec3> points,
+             std::span<const Vec3> cage) {
+  constexpr double tolerance = 1e-4; // of the cage's size: floats, and some digits lost on the way
+  if (weights.cage_vertices() != cage.size()) {
+    return Error{ErrorCode::mismatch, "the weights are for a cage of " +
+                                          std::to_string(weights.cage_vertices()) +
+                                          " vertices, but this one has " +
+                                          std::to_string(cage.size()) + "; bind the model again"};
+  }
+  Box3 box;
+  for (const Vec3& p : cage) {
+    box.extend(p);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Vec3 sum = Vec3::Zero();
+    double total = 0;
+    for (std::size_t c = 0; c < cage.size(); ++c) {
+      const double weight = weights.at(i, c);
+      sum += weight * cage[c];
+      total += weight;
+    }
+    const bool has_weights = total != 0; // else it stays at rest
+    if (has_weights && !((sum - points[i]).norm() <= tolerance * box.sizes().norm())) {
+      return Error{ErrorCode::mismatch, "the weights are for another model or cage: they do not "
+                                        "give its vertex " +
+                                            std::to_string(i) + "; bind the model again"};
+    }
+  }
+  return success();
+}
+
 } // namespace
 
 std::uint64_t checksum(std::span<const Vec3> points) {
@@ -232,20 +319,37 @@ std::uint64_t checksum(std::span<const Vec3> points) {
   return hash;
 }
 
+std::optional<WeightsFormat> weights_format_of_name(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  for (const auto& [name, format] :
+       {std::pair(".npz", WeightsFormat::npz), std::pair(".csv", WeightsFormat::csv),
+        std::pair(".json", WeightsFormat::json), std::pair(".dmat", WeightsFormat::dmat)}) {
+    if (extension == name) {
+      return format;
+    }
+  }
+  return std::nullopt;
+}
+
 Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const Vec3> points,
                                  const PolygonMesh& cage, const std::filesystem::path& path,
                                  const Progress& progress) {
+  return bind_to_file(solver, points, cage, path, WeightsFormat::npz, progress);
+}
+
+Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const Vec3> points,
+                                 const PolygonMesh& cage, const std::filesystem::path& path,
+                                 WeightsFormat format, const Progress& progress) {
   assert(cage.positions.size() == solver.cage_vertices());
-  Result<NpzWriter> file = NpzWriter::create(path);
-  if (!file) {
-    return file.error();
-  }
-  if (Status s = add_identity(*file, points, cage); !s) {
-    return s.error();
-  }
   const std::size_t width = solver.cage_vertices();
-  if (Status s = file->begin("weights", {"<f4", {points.size(), width}}, sizeof(float)); !s) {
-    return s.error();
+  Result<std::unique_ptr<RowSink>> sink = format == WeightsFormat::npz
+                                              ? NpzSink::create(points, cage, path)
+                                              : text_sink(format, points, cage, path);
+  if (!sink) {
+    return sink.error();
   }
   BoundCounts counts;
   std::vector<float> rows(std::min(points.size(), block_tiles * tile_points) * width);
@@ -258,21 +362,27 @@ Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const 
     const BoundCounts more = solve_rows(solver, points.subspan(first, count), block);
     counts.on_surface += more.on_surface;
     counts.undefined += more.undefined;
-    if (Status s = file->write(std::as_bytes(block)); !s) {
+    if (Status s = (*sink)->rows(block); !s) {
       return s.error();
     }
     progress(static_cast<double>(first + count) / static_cast<double>(points.size()), "bind");
   }
-  if (Status s = file->end(); !s) {
-    return s.error();
-  }
-  if (Status s = file->finish(); !s) {
+  if (Status s = (*sink)->finish(); !s) {
     return s.error();
   }
   return counts;
 }
 
 Result<StoredWeights> read_weights(const std::filesystem::path& path) {
+  Result<FileBytes> start = read_start(path);
+  if (!start) {
+    return start.error();
+  }
+  if (const auto format = text_weights_format(start->view())) {
+    const Result<FileBytes> bytes = read_file(path);
+    return bytes ? read_text_weights(bytes->view(), *format, one_line(path.string()))
+                 : bytes.error();
+  }
   Result<NpzReader> file = NpzReader::open(path);
   if (!file) {
     return file.error();
@@ -331,6 +441,9 @@ Status belongs_to(const StoredWeights& stored, std::span<const Vec3> points,
     return mismatch("the weights are for a model of " + std::to_string(stored.weights.points()) +
                     " vertices, but this one has " + std::to_string(points.size()) +
                     ": bind it again");
+  }
+  if (!stored.has_identity) {
+    return gives(stored.weights, points, cage.positions);
   }
   if (stored.model_checksum != checksum(points)) {
     return mismatch("the weights are for another shape of the model, or its vertices in another "

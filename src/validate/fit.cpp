@@ -16,12 +16,12 @@ namespace cagewright {
 namespace {
 
 constexpr std::size_t most_points = 300;
-constexpr double fits = 0.95;     // share of the model's vertices inside a cage that fits
-constexpr double about_fits = 0.4; // inside one that is meant to be where it is
+constexpr double fits = 0.95;       // share of the model's vertices inside a cage that fits
+constexpr double about_fits = 0.4;  // inside one that is meant to be where it is
 constexpr double far_too_large = 3; // times the model's diagonal
 
-/// A cage is as large as its model or up to so many times larger, along each axis, and by so much of
-/// the model's diagonal: flat models have thick cages.
+/// A cage is as large as its model or up to so many times larger, along each axis, and by so much
+/// of the model's diagonal: flat models have thick cages.
 constexpr double most_times = 2.2;
 constexpr double most_beyond = 0.3;
 
@@ -78,8 +78,8 @@ std::vector<NamedTurn> turns() {
 
 std::string short_number(double value) {
   std::array<char, 32> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value,
-                                          std::chars_format::general, 6);
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
   return {text.data(), end};
 }
 
@@ -203,9 +203,8 @@ private:
     const Vec3 model = model_box_.sizes();
     const Vec3 center = fit(cage_box_.center());
     for (int k = 0; k < 3; ++k) {
-      const bool reaches =
-          center[k] - sizes[k] / 2 <= model_box_.min()[k] + 0.05 * model[k] &&
-          center[k] + sizes[k] / 2 >= model_box_.max()[k] - 0.05 * model[k];
+      const bool reaches = center[k] - sizes[k] / 2 <= model_box_.min()[k] + 0.05 * model[k] &&
+                           center[k] + sizes[k] / 2 >= model_box_.max()[k] - 0.05 * model[k];
       if (!reaches || sizes[k] > most_times * model[k] + most_beyond * model.norm()) {
         return false;
       }

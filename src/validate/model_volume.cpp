@@ -158,9 +158,9 @@ private:
         const double b = turn(*p[2], *p[0], x, y);
         const double c = turn(*p[0], *p[1], x, y);
         const double sum = a + b + c;
-        const double depth =
-            sum != 0 ? (a * (*p[0])[axis] + b * (*p[1])[axis] + c * (*p[2])[axis]) / sum
-                     : (*p[0])[axis];
+        const double depth = sum != 0
+                                 ? (a * (*p[0])[axis] + b * (*p[1])[axis] + c * (*p[2])[axis]) / sum
+                                 : (*p[0])[axis];
         crossings_[static_cast<std::size_t>(j) * static_cast<std::size_t>(size_[u]) +
                    static_cast<std::size_t>(i)]
             .push_back({depth, way});
@@ -188,8 +188,7 @@ private:
       if (next > passed && k > 0) {
         samples_[at - stride_[axis]].walls |= static_cast<std::uint8_t>(1U << axis);
       }
-      samples_[at].votes +=
-          static_cast<std::uint8_t>((ahead != 0 ? 1 : 0) + (behind != 0 ? 1 : 0));
+      samples_[at].votes += static_cast<std::uint8_t>((ahead != 0 ? 1 : 0) + (behind != 0 ? 1 : 0));
       samples_[at].winding = ahead;
     }
   }

@@ -338,14 +338,25 @@ class Deform(InAFolder):
         self.assertEqual(rows(self.out, "v"), rows(self.model, "v"))
 
     def test_says_how_cages_differ(self):
-        fewer = self.file("fewer.obj", cage(faces=QUADS[1:]))
-        self.assert_refused(run("deform", self.model, self.rest, fewer, "-o", self.out), BAD_INPUT,
-                            "fewer.obj has 5 faces, the cage at rest 6")
-        other = self.file("other.obj", cage(faces=[QUADS[0][::-1], *QUADS[1:]]))
-        self.assert_refused(run("deform", self.model, self.rest, other, "-o", self.out), BAD_INPUT,
-                            "face 0 of", "has the vertices 1 3 2 0")
+        swapped = self.file("swapped.obj", cage(faces=[[{1: 8, 8: 1}.get(v, v) for v in face]
+                                                       for face in QUADS[::-1]]))
+        self.assert_refused(run("deform", self.model, self.rest, swapped, "-o", self.out), BAD_INPUT,
+                            "swapped.obj", "vertex order")
         self.assert_refused(run("deform", self.model, self.rest, self.model, "-o", self.out),
-                            BAD_INPUT, "has 16 vertices, the cage at rest 8")
+                            BAD_INPUT, "16 vertices", "the cage at rest 8", "pose a copy")
+
+    def test_takes_a_pose_whose_faces_are_others(self):
+        expected = self.folder / "expected.obj"
+        run("deform", self.model, self.rest, self.pose, "-o", expected)
+        points = [line for line in self.pose.read_text().splitlines() if line.startswith("v ")]
+        fans = [f for q in QUADS for f in ((q[1], q[2], q[3]), (q[1], q[3], q[0]))]
+        for name, faces in (("cut", fans), ("turned", [q[1:] + q[:1] for q in QUADS[::-1]]), ("fewer", QUADS[1:])):
+            pose = self.file(f"{name}.obj", "\n".join(points) + "\n" + "".join(
+                "f " + " ".join(map(str, face)) + "\n" for face in faces))
+            done = run("deform", self.model, self.rest, pose, "-o", self.out)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assertEqual(self.out.read_text(), expected.read_text())
+            self.assertEqual("faces are others" in done.stderr, name != "turned", done.stderr)
 
 
 class Bind(InAFolder):
@@ -378,6 +389,42 @@ class Bind(InAFolder):
             for axis in range(3):
                 x = sum(w * corner[axis] for w, corner in zip(row, CORNERS))
                 self.assertAlmostEqual(x, position[axis], delta=1e-6)
+
+    def test_text_formats_are_read_back(self):
+        expected = self.folder / "expected.obj"
+        run("deform", self.model, self.rest, self.pose, "-o", expected, "--weights", self.weights)
+        for name, start in (("w.csv", "# cagewright weights"), ("W.JSON", "{"), ("w.dmat", "8 16\n")):
+            weights = self.folder / name
+            done = run("bind", self.model, self.rest, "-o", weights)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assertTrue(weights.read_text().startswith(start), name)
+            done = run("deform", self.model, self.rest, self.pose, "-o", self.out, "--weights", weights)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assertEqual(self.out.read_text(), expected.read_text(), name)
+            self.out.unlink()
+            wide = self.file("wide.obj", cage(lambda x, y, z: (2 * x, y, z)))
+            self.assert_refused(run("deform", self.model, wide, wide, "-o", self.out, "--weights", weights),
+                                BAD_INPUT, "another")
+
+    def test_groups_of_vertices_are_what_scripts_read(self):
+        groups = self.folder / "groups.json"
+        done = run("bind", self.model, self.rest, "-o", groups, "--format", "vertex-groups")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        told = json.loads(groups.read_text())
+        self.assertEqual((told["format"], told["vertices"], len(told["groups"])), ("cagewright-vertex-groups", 16, 8))
+        sums = [0] * 16
+        for group in told["groups"]:
+            for vertex, weight in zip(group["vertices"], group["weights"], strict=True):
+                sums[vertex] += weight
+        for total in sums:
+            self.assertAlmostEqual(total, 1, delta=1e-6)
+
+    def test_unknown_extensions_are_refused_with_the_list(self):
+        for name in ("w.xyz", "w", "w.npy"):
+            refused = run("bind", self.model, self.rest, "-o", self.folder / name)
+            self.assertEqual(refused.returncode, BAD_INPUT)
+            self.assertIn(".npz, .csv, .json or .dmat", refused.stderr)
+            self.assertFalse((self.folder / name).exists())
 
     def test_can_be_loaded_by_numpy(self):
         try:

@@ -18,6 +18,7 @@ Rows are independent of one another. Every row stands for a kind of file; more o
 readers.
 """
 
+import json
 import pathlib
 import shlex
 import subprocess
@@ -69,8 +70,42 @@ GLTF = [
 
 # Commands, cages from elsewhere, exit codes.
 COMMANDS = [
-    ("F61", "check base.obj F61_cage_touching.obj", {"code": 1, "out": ["not valid"]}),
+    ("F40a", "compare F40_skin_cloth_bone.obj cage.obj --no-poses --json out/f.json",
+     {"check": lambda out: volume_method(out, "enclosed")}),
+    ("F53", "compare F53_double_sided.obj cage.obj --no-poses --json out/f.json",
+     {"check": lambda out: volume_method(out, "enclosed")}),
+    ("F60a", "check base.obj F60_cage_split.glb", {"out": ["valid", "26 vertices", "70 vertices", "cagewright weld"]}),
+    ("F60a weld", "weld F60_cage_split.glb out/w.obj", {"out": ["26 vertices of 96"]}),
+    ("F61", "check base.obj F61_cage_touching.obj", {"code": 1, "out": ["not valid", "at (", "remedy:"]}),
+    ("F62", "check base.obj F62_cage_concave.obj",
+     {"code": 1, "out": ["concave", "folds over", "face 0", "--triangulate"]}),
+    ("F65", "check base.obj F65_cage_inner_reversed.obj", {"code": 1, "out": ["inner shell", "--allow-inner-shells"]}),
+    ("F65 allowed", "check base.obj F65_cage_inner_reversed.obj --allow-inner-shells", {"out": ["valid"]}),
+    ("F70", "deform base.obj cage.obj F70_posed_triangulated.obj -o out/z.obj",
+     {"out": ["642 of 642 vertices moved"], "err": ["faces are others"]}),
+    ("F71", "deform base.obj cage.obj F71_posed_one_more.obj -o out/z.obj",
+     {"code": 2, "err": ["27 vertices", "26 vertices", "pose a copy"]}),
+    ("F72a", "bind F72_subdivided.obj cage.obj -o out/w.npz", {"out": ["bound to 26 cage vertices"]}),
+    ("F74", "bind base.obj F74_half_cage.obj -o out/w.npz", {"err": ["vertex_outside"], "not_err": ["would fit"]}),
+    ("F78a", "deform base.obj cage.obj F78_posed_corner_rotated.obj -o out/z.obj",
+     {"out": ["642 of 642 vertices moved"]}),
+    ("F80a", "check base.obj F80_cage_cm.obj", {"out": ["valid", "scaled by 0.01", "--fit"]}),
+    ("F80a deform", "deform base.obj F80_cage_cm.obj F80_cage_cm.obj -o out/z.obj", {"err": ["scaled by 0.01"]}),
+    ("F80a mended", "weld F80_cage_cm.obj out/w.obj --fit base.obj", {"out": ["100 % of the model's vertices"]}),
+    ("F81", "bind base.obj cage.obj -o out/w.csv",
+     {"file": {"out/w.csv": ["# cagewright weights", "model_vertex,cage_vertex,weight"]}}),
+    ("F81 other", "bind base.obj cage.obj -o out/w.abc", {"code": 2, "err": [".npz, .csv, .json or .dmat"]}),
+    ("N8", "bind base.obj cage.obj -o out/g.json --format vertex-groups",
+     {"file": {"out/g.json": ["cagewright-vertex-groups", "cage_25"]}}),
 ]
+
+
+def volume_method(out, method):
+    cage = json.loads((out / "f.json").read_text())["cages"][0]
+    if cage["model_volume_method"] != method or not 1 < cage["volume_ratio"] < 10:
+        return f"the volume is {cage['model_volume_method']}, the ratio {cage['volume_ratio']}"
+    return None
+
 
 CASES = READERS + GLTF + COMMANDS
 

@@ -80,6 +80,56 @@ TEST_F(WeightsFile, GivesBackWhatWasBound) {
   EXPECT_TRUE(belongs_to(*stored, points_, cage_));
 }
 
+TEST_F(WeightsFile, GivesBackWhatWasBoundAsText) {
+  points_.resize(700);
+  bind();
+  const Result<StoredWeights> expected = read_weights(path_);
+  for (const WeightsFormat format :
+       {WeightsFormat::csv, WeightsFormat::json, WeightsFormat::dmat}) {
+    ASSERT_TRUE(bind_to_file(solver(), points_, cage_, path_, format));
+    const Result<StoredWeights> stored = read_weights(path_); // by content, not by name
+    ASSERT_TRUE(stored) << stored.error().message;
+    ASSERT_EQ(stored->weights.points(), points_.size());
+    for (std::size_t t = 0; t < expected->weights.tile_count(); ++t) {
+      ASSERT_TRUE(std::ranges::equal(stored->weights.tile(t), expected->weights.tile(t)));
+    }
+    EXPECT_TRUE(belongs_to(*stored, points_, cage_));
+    std::vector<Vec3> others = points_;
+    others[30].x() += 0.5;
+    EXPECT_FALSE(belongs_to(*stored, others, cage_));
+    others.pop_back();
+    EXPECT_FALSE(belongs_to(*stored, others, cage_));
+  }
+}
+
+TEST_F(WeightsFile, RefusesTextThatIsCutOffOrDamaged) {
+  points_.resize(40);
+  for (const WeightsFormat format :
+       {WeightsFormat::csv, WeightsFormat::json, WeightsFormat::dmat}) {
+    ASSERT_TRUE(bind_to_file(solver(), points_, cage_, path_, format));
+    const std::string whole = bytes();
+    for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 97) {
+      overwrite(whole.substr(0, size));
+      const Result<StoredWeights> stored = read_weights(path_);
+      // CSV has no end: what is missing is a weight that does not add up.
+      EXPECT_FALSE(stored && belongs_to(*stored, points_, cage_)) << size;
+    }
+    for (std::size_t at = 0; at < whole.size(); at += 1 + whole.size() / 197) {
+      std::string damaged = whole;
+      damaged[at] = static_cast<char>(damaged[at] ^ 0x51);
+      overwrite(damaged);
+      (void)read_weights(path_); // must come back
+    }
+  }
+}
+
+TEST_F(WeightsFile, WritesGroupsOfVertices) {
+  points_.resize(10);
+  ASSERT_TRUE(bind_to_file(solver(), points_, cage_, path_, WeightsFormat::vertex_groups));
+  EXPECT_EQ(bytes().rfind("{\"format\": \"cagewright-vertex-groups\"", 0), 0U);
+  EXPECT_NE(refusal().find("groups of vertices"), std::string::npos);
+}
+
 TEST_F(WeightsFile, HoldsTheSameBytesEachTime) {
   bind();
   const std::string first = bytes();
@@ -156,9 +206,10 @@ TEST_F(WeightsFile, SaysWhatItIsNot) {
   overwrite("PK\5\6");
   EXPECT_NE(refusal(), "accepted");
   std::filesystem::remove(path_);
-  EXPECT_EQ(refusal(), path_.string() + ": No such file or directory");
+  EXPECT_EQ(refusal(), path_.string() + ": there is no such file; check the name and the folder");
   std::filesystem::create_directory(path_);
-  EXPECT_EQ(refusal(), path_.string() + ": not a regular file");
+  EXPECT_EQ(refusal(),
+            path_.string() + ": not a regular file; give the file that bind has written");
 }
 
 TEST_F(WeightsFile, LeavesNothingBehindWhenCancelled) {

@@ -136,6 +136,63 @@ TEST(ModelVolume, OfAnOpenMeshIsThatOfTheClosedOneToAPercent) {
   }
 }
 
+/// Two meshes as one.
+TriangleMesh both(TriangleMesh a, const TriangleMesh& b) {
+  const auto offset = static_cast<Index>(a.positions.size());
+  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+  for (const Triangle& t : b.triangles) {
+    a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  }
+  return a;
+}
+
+TriangleMesh turned_inside_out(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) {
+    std::swap(t[0], t[1]);
+  }
+  return mesh;
+}
+
+TriangleMesh grown(TriangleMesh mesh, double factor, const Vec3& shift = Vec3::Zero()) {
+  for (Vec3& p : mesh.positions) {
+    p = factor * p + shift;
+  }
+  return mesh;
+}
+
+TEST(ModelVolume, CountsWhatPartsEncloseOnce) {
+  const TriangleMesh sphere = make_icosphere(4);
+  const double whole = signed_volume(sphere);
+  const struct {
+    const char* what;
+    TriangleMesh model;
+    double volume;
+  } cases[] = {
+      {"every face twice", both(sphere, turned_inside_out(sphere)), whole},
+      {"the same twice", both(sphere, sphere), whole},
+      {"skin, bone", both(sphere, grown(sphere, 0.4)), whole},
+      {"a hollow", both(sphere, turned_inside_out(grown(sphere, 0.9))), whole},
+      {"skin above skin", both(sphere, grown(sphere, 1.01)), 1.01 * 1.01 * 1.01 * whole},
+      {"one of two inside out", both(sphere, turned_inside_out(grown(sphere, 1, {3, 0, 0}))),
+       2 * whole},
+  };
+  for (const auto& [what, model, expected] : cases) {
+    const ModelVolume volume = model_volume(model);
+    EXPECT_EQ(volume.method, VolumeMethod::enclosed) << what;
+    EXPECT_NEAR(volume.value, expected, 0.015 * expected) << what;
+  }
+  const ModelVolume apart = model_volume(both(sphere, grown(sphere, 1, {3, 0, 0})));
+  EXPECT_EQ(apart.method, VolumeMethod::exact);
+  EXPECT_NEAR(apart.value, 2 * whole, 1e-9);
+}
+
+TEST(ModelVolume, OfADoubledSheetIsNothing) {
+  TriangleMesh sheet;
+  sheet.positions = {{0, 0, 0}, {1, 0, 0.25}, {1, 1, 0.375}, {0, 1, 0.125}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 2, 1}, {0, 3, 2}};
+  EXPECT_EQ(model_volume(sheet).value, 0);
+}
+
 TEST(ModelVolume, OfAFlatSheetIsNothing) {
   TriangleMesh sheet;
   sheet.positions = {{0, 0, 0}, {1, 0, 0.25}, {1, 1, 0.375}, {0, 1, 0.125}};

@@ -340,6 +340,7 @@ TEST(ValidateCage, ListsAVertexOutside) {
   TriangleMesh model = small_model();
   const auto stray = static_cast<Index>(model.positions.size());
   model.positions.emplace_back(0, 1.5, 0);
+  model.triangles.clear(); // points: all are judged
   const ValidityReport report = judge(make_cube(), model);
   EXPECT_EQ(kinds(report), Kinds{"vertex_outside"});
   EXPECT_EQ(places(report, ViolationKind::vertex_outside), (std::set<Elements>{{stray, none}}));
@@ -366,7 +367,9 @@ TEST(ValidateCage, ListsAVertexThatLiesExactlyOnTheCage) {
     TriangleMesh model = small_model();
     const auto stray = static_cast<Index>(model.positions.size());
     model.positions.push_back(place);
-    const ValidityReport report = judge(make_cube(), model);
+    TriangleMesh points = model;
+    points.triangles.clear();
+    const ValidityReport report = judge(make_cube(), points);
     EXPECT_EQ(kinds(report), Kinds{"vertex_on_cage"});
     ASSERT_EQ(report.violations.size(), 1U);
     EXPECT_EQ(report.violations[0].elements[0], stray);
@@ -438,7 +441,85 @@ TEST(ValidateCage, ListsAQuadThatFoldsOverUnderOneDiagonal) {
   cage.add_face({3, 2, 4});
   cage.add_face({0, 3, 4});
   const ValidityReport report = judge(cage, TriangleMesh());
-  EXPECT_TRUE(places(report, ViolationKind::self_intersection).contains(Elements{0, 0}));
+  EXPECT_EQ(places(report, ViolationKind::folded_face), (std::set<Elements>{{0, none}}));
+  EXPECT_EQ(report.count(ViolationKind::self_intersection), 0U);
+}
+
+// ---- Cages from elsewhere
+
+/// Every face with vertices of its own.
+PolygonMesh split(const TriangleMesh& mesh) {
+  PolygonMesh result;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<Index>(result.positions.size());
+    for (const Index v : t) {
+      result.positions.push_back(mesh.positions[v]);
+    }
+    result.add_face({first, first + 1, first + 2});
+  }
+  return result;
+}
+
+TEST(ValidateCage, JudgesSplitVerticesMergedWhereAsked) {
+  PolygonMesh cage = split(make_icosphere(1));
+  cage.positions.emplace_back(9, 9, 9); // loose
+  EXPECT_FALSE(judge(cage, small_model()).valid());
+  const ValidityReport report = judge(cage, small_model(), {.weld = true});
+  EXPECT_TRUE(report.valid());
+  EXPECT_EQ(report.merged_vertices, 240U - 42U);
+  EXPECT_EQ(report.loose_vertices, 1U);
+  const ValidityReport whole = judge(make_icosphere(1), small_model(), {.weld = true});
+  EXPECT_TRUE(whole.valid());
+  EXPECT_EQ(whole.merged_vertices, 0U);
+}
+
+TEST(ValidateCage, MergingDoesNotHideWhatIsWrong) {
+  TriangleMesh open = make_icosphere(1);
+  open.triangles.pop_back();
+  EXPECT_EQ(judge(split(open), small_model(), {.weld = true}).count(ViolationKind::open_edge), 3U);
+  TriangleMesh torn = make_icosphere(1);
+  PolygonMesh cage = split(torn);
+  cage.positions[0] *= 1 + 1e-15; // off by a hair: no longer the same position
+  EXPECT_GT(judge(cage, small_model(), {.weld = true}).count(ViolationKind::open_edge), 0U);
+}
+
+TEST(ValidateCage, NamesTJunctions) {
+  // The top of a cube is cut in two, its neighbors are not.
+  PolygonMesh cage;
+  cage.positions = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1},
+                    {1, -1, 1},   {1, 1, 1},   {-1, 1, 1}, {0, -1, 1},  {0, 1, 1}};
+  cage.add_face({0, 3, 2, 1});
+  cage.add_face({0, 1, 5, 4});
+  cage.add_face({1, 2, 6, 5});
+  cage.add_face({2, 3, 7, 6});
+  cage.add_face({3, 0, 4, 7});
+  cage.add_face({4, 8, 9, 7});
+  cage.add_face({8, 5, 6, 9});
+  const ValidityReport report = judge(cage, small_model());
+  EXPECT_EQ(places(report, ViolationKind::t_junction), (std::set<Elements>{{8, 1}, {9, 3}}));
+  EXPECT_GT(report.count(ViolationKind::open_edge), 0U);
+}
+
+TEST(ValidateCage, AcceptsInnerShellsWhereAsked) {
+  const TriangleMesh shell = scaled(make_cube(), 0.2, {0.6, 0.6, 0.6});
+  const ValidateOptions allowed = {.allow_inner_shells = true};
+  EXPECT_TRUE(judge(joined(make_cube(), flipped(shell)), small_model(), allowed).valid());
+  EXPECT_EQ(kinds(judge(joined(make_cube(), shell), small_model(), allowed)),
+            Kinds{"inverted_piece"});
+  EXPECT_EQ(
+      kinds(judge(joined(make_cube(), scaled(make_cube(), 1, {5, 0, 0})), small_model(), allowed)),
+      Kinds{"several_pieces"});
+  // What a shell encloses is inside all the same.
+  EXPECT_TRUE(judge(joined(make_cube(), flipped(scaled(make_cube(), 0.5))), small_model(), allowed)
+                  .valid());
+}
+
+TEST(ValidateCage, LeavesOutModelVerticesOfNoFace) {
+  TriangleMesh model = small_model();
+  model.positions.emplace_back(1e6, 0, 0);
+  const ValidityReport report = judge(make_cube(), model);
+  EXPECT_TRUE(report.valid());
+  EXPECT_EQ(report.loose_model_vertices, 1U);
 }
 
 // ---- How it reports

@@ -10,10 +10,23 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
 namespace cagewright {
+
+/// The files that weights are written to.
+enum class WeightsFormat {
+  npz,  ///< NumPy's: numpy.load(path)
+  csv,  ///< lines "model_vertex,cage_vertex,weight" but for zeros; # begins what they are for
+  json, ///< one object: "weights" has a list for each vertex of the model
+  dmat, ///< libigl's: the matrix alone, as text
+  vertex_groups, ///< JSON for scripts: a group of vertices with weights for each cage vertex
+};
+
+/// The format of an extension: .npz, .csv, .json or .dmat, in upper or lower case; none for others.
+std::optional<WeightsFormat> weights_format_of_name(const std::filesystem::path& path);
 
 /// Weights as read from a file, with what is needed to tell whether they are the right ones.
 struct StoredWeights {
@@ -21,6 +34,7 @@ struct StoredWeights {
   PolygonMesh cage;                 ///< at rest: C vertices
   std::string kind;                 ///< of coordinates: "mean_value"
   std::uint64_t model_checksum = 0; ///< checksum() of the model's P positions
+  bool has_identity = true; ///< false: the file holds the weights alone (DMAT), the rest is empty
 };
 
 /// A number that changes when a coordinate, the order or the count of the points does.
@@ -45,12 +59,26 @@ Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const 
                                  const PolygonMesh& cage, const std::filesystem::path& path,
                                  const Progress& progress = {});
 
-/// Reads such a file; also one that was compressed by numpy.savez_compressed.
+/// The same in a format of choice. In CSV, JSON and DMAT weights read back as the same floats; DMAT
+/// holds them alone, and read_weights() must tell whether they belong to a model by what they give.
+/// DMAT and groups of vertices go by columns: the matrix stands in memory.
+///
+/// Groups of vertices: {"format": "cagewright-vertex-groups", "version": 1, "vertices": P,
+/// "groups": [{"name": "cage_0", "vertices": [...], "weights": [...]}, ...]}, one for each cage
+/// vertex, zeros left out; weights may be negative.
+///
+/// Errors: cannot_write, cancelled, too_large (the matrix does not fit the memory allowed).
+Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const Vec3> points,
+                                 const PolygonMesh& cage, const std::filesystem::path& path,
+                                 WeightsFormat format, const Progress& progress = {});
+
+/// Reads such a file, whatever its name; also one that was compressed by numpy.savez_compressed.
 /// Errors: cannot_open, malformed (foreign, cut off or damaged), unsupported (of a later version
 /// or another kind), too_large.
 Result<StoredWeights> read_weights(const std::filesystem::path& path);
 
-/// Whether the weights were made for these points and this cage, exactly.
+/// Whether the weights were made for these points and this cage, exactly; without identity, whether
+/// they give the points from the cage.
 /// Errors: mismatch, with what differs.
 Status belongs_to(const StoredWeights& stored, std::span<const Vec3> points,
                   const PolygonMesh& cage);

@@ -16,7 +16,8 @@ struct CageFit {
   double scale = 1;
   Mat3 turn = Mat3::Identity(); ///< a rotation by right angles
   Vec3 shift = Vec3::Zero();
-  double inside = 0; ///< share of the model's vertices, in [0, 1], inside the cage once it is changed
+  double inside =
+      0; ///< share of the model's vertices, in [0, 1], inside the cage once it is changed
   /// What to do, such as "scaled by 0.01 (another unit)" or "turned by 90 degrees about the x axis
   /// (y up to z up) and shifted by (0, 2, 0)".
   std::string description;

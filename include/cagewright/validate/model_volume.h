@@ -9,7 +9,7 @@
 namespace cagewright {
 
 enum class VolumeMethod {
-  none,    ///< there are no triangles
+  none,     ///< there are no triangles
   exact,    ///< the mesh is closed and oriented once equal positions are merged, and winds round
             ///< what it encloses just once: its signed volume
   sampled,  ///< it is open or inconsistent: the share of sample points that are enclosed
@@ -29,9 +29,10 @@ struct ModelVolume {
 ///
 /// Samples are the middles of the cells of a grid of 96 along the longest side of the bounding box.
 /// One is enclosed when no way from cell to cell leads from it to the outside without crossing the
-/// surface; or when at least four of the six rays from it along the axes cross the surface unequally
-/// often from either side, which closes holes. Neither minds the orientation of the whole. The error
-/// is below about 1 % for a compact model; flat sheets have none, bent ones what they half surround.
+/// surface; or when at least four of the six rays from it along the axes cross the surface
+/// unequally often from either side, which closes holes. Neither minds the orientation of the
+/// whole. The error is below about 1 % for a compact model; flat sheets have none, bent ones what
+/// they half surround.
 ///
 /// Cost: O(T) and a million samples.
 ModelVolume model_volume(TriangleView model);

@@ -58,8 +58,8 @@ struct Violation {
 struct ValidateOptions {
   /// Accept a cage of several closed pieces, none within another.
   bool allow_pieces = false;
-  /// Accept closed pieces within others, where they are oriented inward. What they enclose counts as
-  /// inside the cage, too.
+  /// Accept closed pieces within others, where they are oriented inward. What they enclose counts
+  /// as inside the cage, too.
   bool allow_inner_shells = false;
   /// Judge vertices at exactly equal positions as one, as many exporters split them, and leave out
   /// vertices that no face uses; the report counts both. Elements of violations are then the first
