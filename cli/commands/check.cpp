@@ -27,7 +27,7 @@ struct Options {
   ValidateOptions validate;
 };
 
-std::string describe(const ValidityReport& report, const JudgedFiles& files) {
+std::string report_text(const ValidityReport& report, const JudgedFiles& files) {
   std::string text =
       "not valid (vertices and faces are counted from 0, in the order of the files)\n";
   std::size_t next = 0;
@@ -42,7 +42,7 @@ std::string describe(const ValidityReport& report, const JudgedFiles& files) {
                             : "");
     std::size_t listed = 0;
     for (; next < report.violations.size() && report.violations[next].kind == kind; ++next) {
-      const std::string violation = cagewright::cli::describe(report.violations[next]);
+      const std::string violation = describe(report.violations[next]);
       text += violation.empty() ? "" : "    " + violation + "\n";
       ++listed;
     }
@@ -128,7 +128,7 @@ int run(const Options& options, const Session& session) {
     }
   }
   std::string text =
-      report->valid() ? "valid\n" + figures_as_text(metrics) : describe(*report, options.files);
+      report->valid() ? "valid\n" + figures_as_text(metrics) : report_text(*report, options.files);
   for (const FileNote& note : notes) {
     text += "note: " + note.message + "\n";
   }

@@ -365,12 +365,13 @@ private:
         continue;
       }
       nested[piece] = has_sides && is_nested(piece, face) ? 1 : 0;
-      const bool is_allowed =
-          options_.allow_pieces || (options_.allow_inner_shells && nested[piece] != 0);
-      if (has_piece && !is_allowed) {
+      if (nested[piece] != 0) {
+        continue; // told or accepted as such, below
+      }
+      if (has_piece && !options_.allow_pieces) {
         add_face(ViolationKind::several_pieces, face);
       }
-      has_piece = has_piece || !(options_.allow_inner_shells && nested[piece] != 0);
+      has_piece = true;
     }
     if (!has_sides) {
       return;
