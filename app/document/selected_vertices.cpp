@@ -41,6 +41,11 @@ std::optional<Selection> selection_at(const Violation& violation, const PolygonM
       }
     }
     break;
+  case ViolationKind::t_junction:
+    if (a < cage.positions.size()) {
+      found.vertices.push_back(a);
+    }
+    break;
   case ViolationKind::open_edge:
   case ViolationKind::nonmanifold_edge:
   case ViolationKind::flipped_edge:
@@ -59,6 +64,7 @@ std::optional<Selection> selection_at(const Violation& violation, const PolygonM
     break;
   case ViolationKind::bad_corner:
   case ViolationKind::degenerate_face:
+  case ViolationKind::folded_face:
   case ViolationKind::duplicate_face:
   case ViolationKind::inverted_piece:
   case ViolationKind::several_pieces:

@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cassert>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -106,8 +107,8 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
   if (made->is_as_asked()) {
     return done;
   }
-  return fail({ErrorCode::no_valid_cage,
-               "not as asked for: " + made->remarks.front().message}); // exit code 3
+  std::fprintf(stderr, "cagewright: not as asked for: %s\n", made->remarks.front().message.c_str());
+  return not_satisfiable;
 }
 
 } // namespace
