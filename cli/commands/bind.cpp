@@ -31,8 +31,8 @@ int run(const Options& options, const Session& session) {
     return fail(solver.error());
   }
   const auto start = std::chrono::steady_clock::now();
-  const Result<BoundCounts> counts = bind_to_file(*solver, meshes->model.positions, meshes->cage,
-                                                  options.output, session.progress());
+  const Result<BoundCounts> counts = bind_to_file(*solver, meshes->bound.mesh.positions,
+                                                  meshes->cage, options.output, session.progress());
   if (!counts) {
     return fail(counts.error());
   }
@@ -40,7 +40,7 @@ int run(const Options& options, const Session& session) {
   if (!session.quiet) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     fmt::print("{}: {} model vertices bound to {} cage vertices in {:.2f} s\n", options.output,
-               meshes->model.positions.size(), meshes->cage.positions.size(), seconds.count());
+               meshes->bound.mesh.positions.size(), meshes->cage.positions.size(), seconds.count());
   }
   return done;
 }

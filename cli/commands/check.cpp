@@ -1,5 +1,6 @@
 #include "cage_figures.h"
 #include "load.h"
+#include "model_choice.h"
 #include "session.h"
 
 #include "io/atomic_file.h"
@@ -22,6 +23,7 @@ struct Options {
   std::string cage;
   std::string json;
   ValidateOptions validate;
+  ModelChoice choice;
 };
 
 /// What the elements of a violation are, in words.
@@ -147,14 +149,13 @@ void name_model_faces(ValidityReport& report, const Triangulation& model) {
 }
 
 int run(const Options& options, const Session& session) {
-  const auto model = load_mesh(options.model);
-  if (!model) {
-    return fail(model.error());
+  const Result<ModelAndCage> meshes =
+      load_model_and_cage(options.model, options.cage, options.choice);
+  if (!meshes) {
+    return fail(meshes.error());
   }
-  const auto cage = load_mesh(options.cage);
-  if (!cage) {
-    return fail(cage.error());
-  }
+  const PolygonMesh* const model = &meshes->bound.mesh;
+  const PolygonMesh* const cage = &meshes->cage;
   const Triangulation triangles = triangulate(*model);
   const TriangleView view{model->positions, triangles.triangles};
   auto report = validate_cage(*cage, view, options.validate, session.progress());
@@ -188,6 +189,11 @@ void add_check(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   command->add_option("model", options->model, "The model that the cage is for")->required();
   command->add_option("cage", options->cage, "The cage to judge")->required();
+  add_pose_option(*command, options->choice);
+  add_only_option(*command, options->choice,
+                  "The cage is for this object or group of the model; its vertices and faces are "
+                  "counted on their own");
+  add_cage_object_option(*command, options->choice);
   command->add_option("--json", options->json, "Write the verdict to this file as JSON");
   command->add_flag("--allow-pieces", options->validate.allow_pieces,
                     "Accept a cage of several closed pieces");

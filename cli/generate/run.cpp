@@ -3,6 +3,7 @@
 #include "generate/density.h"
 #include "generate/report.h"
 #include "load.h"
+#include "model_choice.h"
 
 #include "cage/decompose.h"
 #include "cage/hexahedron.h"
@@ -109,7 +110,7 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
   if (const Status writable = can_write_mesh(arguments.output); !writable) {
     return fail(writable.error());
   }
-  const Result<PolygonMesh> mesh = load_mesh(arguments.model);
+  const Result<PolygonMesh> mesh = load_chosen(arguments.model, arguments.choice);
   if (!mesh) {
     return fail(mesh.error());
   }
