@@ -40,23 +40,19 @@ void add_binding_options(CLI::App& command, BindingOptions& options) {
       ->check(CLI::IsMember({"center", "diagonal"}));
   command.add_flag("--strict", options.strict,
                    "Stop with exit code 1 unless the cage is valid for the model; else only warn");
+  add_pose_option(command, options.choice);
+  add_only_option(command, options.choice,
+                  "The cage is for this object or group of the model; all else stays as it is");
+  add_cage_object_option(command, options.choice);
 }
 
 Result<ModelAndCage> read_model_and_cage(const BindingOptions& options) {
-  Result<PolygonMesh> model = load_mesh(options.model);
-  if (!model) {
-    return model.error();
-  }
-  Result<PolygonMesh> cage = load_mesh(options.cage);
-  if (!cage) {
-    return cage.error();
-  }
-  return ModelAndCage{*std::move(model), *std::move(cage)};
+  return load_model_and_cage(options.model, options.cage, options.choice);
 }
 
 Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Session& session) {
-  const Triangulation triangles = triangulate(meshes.model);
-  const TriangleView model{meshes.model.positions, triangles.triangles};
+  const Triangulation triangles = triangulate(meshes.bound.mesh);
+  const TriangleView model{meshes.bound.mesh.positions, triangles.triangles};
   const Result<ValidityReport> report = validate_cage(
       meshes.cage, model,
       {.allow_pieces = true, .allow_inner_shells = true, .weld = true, .max_listed = 0},

@@ -2,6 +2,7 @@
 /// What the commands bind and deform share: a model, a cage at rest, and whether they fit.
 #pragma once
 
+#include "model_choice.h"
 #include "session.h"
 
 #include <cagewright/coordinates/mean_value.h>
@@ -18,18 +19,15 @@ struct BindingOptions {
   std::string cage;
   std::string quads = "center";
   bool strict = false;
+  ModelChoice choice;
 };
 
 /// The error, with the file it is about in front.
 Error about_file(const std::string& path, const Error& error);
 
-/// Declares the arguments MODEL and CAGE and the options --quads and --strict.
+/// Declares the arguments MODEL and CAGE and the options --quads, --strict, --pose,
+/// --only and --cage-object.
 void add_binding_options(CLI::App& command, BindingOptions& options);
-
-struct ModelAndCage {
-  PolygonMesh model;
-  PolygonMesh cage;
-};
 
 Result<ModelAndCage> read_model_and_cage(const BindingOptions& options);
 

@@ -3,7 +3,6 @@
 #include "io/atomic_file.h"
 #include "io/source.h"
 #include <cagewright/io/mesh_format.h>
-#include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -44,25 +43,17 @@ nlohmann::json notes_as_json() {
   return list;
 }
 
-Result<ModelFile> load_model(const std::string& path) {
-  Result<ModelFile> file = ModelFile::open(path);
+Result<ModelFile> load_model(const std::string& path, Pose pose) {
+  Result<ModelFile> file = ModelFile::open(path, pose);
   if (file) {
     tell(file->notes());
   }
   return file;
 }
 
-Result<PolygonMesh> load_mesh(const std::string& path) {
-  Result<ModelFile> file = load_model(path);
+Result<PolygonMesh> load_mesh(const std::string& path, Pose pose) {
+  Result<ModelFile> file = load_model(path, pose);
   return file ? Result<PolygonMesh>(std::move(*file).take_mesh()) : file.error();
-}
-
-Result<TriangleMesh> load_triangles(const std::string& path) {
-  const Result<PolygonMesh> mesh = load_mesh(path);
-  if (!mesh) {
-    return mesh.error();
-  }
-  return to_triangle_mesh(*mesh);
 }
 
 Error in_file(const std::string& path, Error error) {

@@ -5,7 +5,6 @@
 #include <cagewright/core/result.h>
 #include <cagewright/io/model_file.h>
 #include <cagewright/mesh/polygon_mesh.h>
-#include <cagewright/mesh/triangle_mesh.h>
 
 #include <nlohmann/json.hpp>
 
@@ -22,13 +21,10 @@ void tell(std::span<const FileNote> notes);
 nlohmann::json notes_as_json();
 
 /// Reads a model, and tells what was noted.
-Result<ModelFile> load_model(const std::string& path);
+Result<ModelFile> load_model(const std::string& path, Pose pose = Pose::shown);
 
 /// The mesh alone.
-Result<PolygonMesh> load_mesh(const std::string& path);
-
-/// Reads a mesh and cuts its faces into triangles.
-Result<TriangleMesh> load_triangles(const std::string& path);
+Result<PolygonMesh> load_mesh(const std::string& path, Pose pose = Pose::shown);
 
 /// The error, with the file it is about in front of the message.
 Error in_file(const std::string& path, Error error);

@@ -40,6 +40,9 @@ function(cagewright_add_module)
   if(M_SOURCES)
     target_link_libraries(cagewright_${M_NAME} PRIVATE $<BUILD_INTERFACE:cagewright_compiler> ${M_PRIVATE_LINKS})
     target_precompile_headers(cagewright_${M_NAME} REUSE_FROM cagewright_precompiled)
+    # Read from a precompiled header, the compiler's own headers of vector instructions alarm g++.
+    list(FILTER M_SOURCES INCLUDE REGEX "_simd\\.cpp$")
+    set_source_files_properties(${M_SOURCES} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
   endif()
   # An export of its own: who asks for one component meets no dependency of another (see Install.cmake).
   set_property(GLOBAL APPEND PROPERTY CAGEWRIGHT_MODULES ${M_NAME})

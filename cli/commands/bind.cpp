@@ -57,7 +57,7 @@ int run(const Options& options, const Session& session) {
     return fail(solver.error());
   }
   const auto start = std::chrono::steady_clock::now();
-  const Result<BoundCounts> counts = bind_to_file(*solver, meshes->model.positions, meshes->cage,
+  const Result<BoundCounts> counts = bind_to_file(*solver, meshes->bound.mesh.positions, meshes->cage,
                                                   options.output, *format, session.progress());
   if (!counts) {
     return fail(counts.error());
@@ -65,7 +65,7 @@ int run(const Options& options, const Session& session) {
   warn_of_points(options.binding.cage, counts->on_surface, counts->undefined);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   session.say(fmt::format("{}: {} model vertices bound to {} cage vertices in {:.2f} s\n",
-                          options.output, meshes->model.positions.size(),
+                          options.output, meshes->bound.mesh.positions.size(),
                           meshes->cage.positions.size(), seconds.count()));
   return done;
 }

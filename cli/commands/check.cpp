@@ -2,6 +2,7 @@
 #include "cage_words.h"
 #include "json.h"
 #include "load.h"
+#include "model_choice.h"
 #include "session.h"
 
 #include <cagewright/mesh/triangulate.h>
@@ -25,6 +26,7 @@ struct Options {
   JudgedFiles files;
   std::string json;
   ValidateOptions validate;
+  ModelChoice choice;
 };
 
 std::string report_text(const ValidityReport& report, const JudgedFiles& files) {
@@ -99,14 +101,13 @@ void name_model_faces(ValidityReport& report, const Triangulation& model) {
 }
 
 int run(const Options& options, const Session& session) {
-  const auto model = load_mesh(options.files.model);
-  if (!model) {
-    return fail(model.error());
+  const Result<ModelAndCage> meshes =
+      load_model_and_cage(options.files.model, options.files.cage, options.choice);
+  if (!meshes) {
+    return fail(meshes.error());
   }
-  const auto cage = load_mesh(options.files.cage);
-  if (!cage) {
-    return fail(cage.error());
-  }
+  const PolygonMesh* const model = &meshes->bound.mesh;
+  const PolygonMesh* const cage = &meshes->cage;
   const Triangulation triangles = triangulate(*model);
   const TriangleView view{model->positions, triangles.triangles};
   auto report = validate_cage(*cage, view, options.validate, session.progress());
@@ -157,6 +158,11 @@ void add_check(CLI::App& app, Session& session) {
   options->validate.weld = true;
   command->add_option("model", options->files.model, "The model that the cage is for")->required();
   command->add_option("cage", options->files.cage, "The cage to judge")->required();
+  add_pose_option(*command, options->choice);
+  add_only_option(*command, options->choice,
+                  "The cage is for this object or group of the model; its vertices and faces are "
+                  "counted on their own");
+  add_cage_object_option(*command, options->choice);
   command->add_option("--json", options->json, "Write the verdict to this file as JSON");
   command->add_flag("--allow-pieces", options->validate.allow_pieces,
                     "Accept a cage of several closed pieces");

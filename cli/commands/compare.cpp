@@ -1,9 +1,11 @@
 #include "cage_figures.h"
 #include "json.h"
 #include "load.h"
+#include "model_choice.h"
 #include "session.h"
 
 #include <cagewright/deform/standard_poses.h>
+#include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/cage_metrics.h>
 #include <cagewright/validate/model_volume.h>
 #include <cagewright/validate/validate_cage.h>
@@ -27,6 +29,7 @@ struct Options {
   std::vector<std::string> cages;
   std::string json;
   bool no_poses = false;
+  ModelChoice choice;
 };
 
 /// All that is said of one cage.
@@ -181,17 +184,18 @@ nlohmann::json as_json(const Compared& cage) {
 }
 
 int run(const Options& options, const Session& session) {
-  const Result<TriangleMesh> model = load_triangles(options.model);
-  if (!model) {
-    return fail(model.error());
+  const Result<PolygonMesh> mesh = load_chosen(options.model, options.choice);
+  if (!mesh) {
+    return fail(mesh.error());
   }
-  const ModelVolume volume = model_volume(*model);
+  const TriangleMesh model = to_triangle_mesh(*mesh);
+  const ModelVolume volume = model_volume(model);
   const Progress progress = session.progress();
   std::vector<Compared> cages;
   const auto count = static_cast<double>(options.cages.size());
   for (std::size_t i = 0; i < options.cages.size(); ++i) {
     Result<Compared> cage =
-        describe(options.cages[i], *model, volume, !options.no_poses,
+        describe(options.cages[i], model, volume, !options.no_poses,
                  progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
     if (!cage) {
       return fail(cage.error());
@@ -225,6 +229,8 @@ void add_compare(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   command->add_option("model", options->model, "The model that the cages are for")->required();
   command->add_option("cages", options->cages, "The cages")->required();
+  add_pose_option(*command, options->choice);
+  add_only_option(*command, options->choice, "The cages are for this object or group of the model");
   command->add_option("--json", options->json, "Write the same and more to this file as JSON");
   command->add_flag("--no-poses", options->no_poses,
                     "Leave out the bend and the twist, which take longest on large models");

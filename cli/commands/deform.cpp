@@ -38,7 +38,6 @@ struct Options {
   std::vector<std::string> poses;
   std::string output;
   std::string weights;
-  std::vector<std::string> groups;
 };
 
 struct Pose {
@@ -119,12 +118,23 @@ Status can_write_all(const Options& options, const std::vector<Pose>& poses) {
   return success();
 }
 
-Result<std::vector<std::vector<Vec3>>> read_poses(const std::vector<Pose>& poses,
-                                                  const PolygonMesh& rest) {
+/// A deformed cage: it may stand in a file of its own, though the cage at rest was one of several
+/// objects.
+Result<PolygonMesh> load_posed(const std::string& path, const PolygonMesh& rest,
+                               const ModelChoice& choice) {
+  Result<PolygonMesh> whole = load_mesh(path, choice.pose);
+  const bool is_cage = !whole || choice.cage_objects.empty() ||
+                       (whole->positions.size() == rest.positions.size() &&
+                        whole->face_count() == rest.face_count());
+  return is_cage ? std::move(whole) : load_cage(path, choice);
+}
+
+Result<std::vector<std::vector<Vec3>>>
+read_poses(const std::vector<Pose>& poses, const PolygonMesh& rest, const ModelChoice& choice) {
   std::vector<std::vector<Vec3>> positions;
   std::set<std::string> noted;
   for (const Pose& pose : poses) {
-    Result<PolygonMesh> cage = load_mesh(pose.path);
+    Result<PolygonMesh> cage = load_posed(pose.path, rest, choice);
     if (!cage) {
       return cage.error();
     }
@@ -141,52 +151,13 @@ Result<std::vector<std::vector<Vec3>>> read_poses(const std::vector<Pose>& poses
   return positions;
 }
 
-/// The vertices that may move: those of the faces of the named groups, or all.
-Result<std::vector<Index>> chosen_vertices(const PolygonMesh& model,
-                                           const std::vector<std::string>& groups) {
-  std::vector<Index> chosen;
-  if (groups.empty()) {
-    chosen.resize(model.positions.size());
-    std::iota(chosen.begin(), chosen.end(), Index(0));
-    return chosen;
+/// All positions of the model: the given ones of its bound part, the others at rest.
+std::vector<Vec3> with_part(const ModelAndCage& meshes, std::span<const Vec3> moved) {
+  std::vector<Vec3> positions = meshes.model.positions;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    positions[meshes.bound.vertices[i]] = moved[i];
   }
-  std::vector<bool> is_chosen_group(model.group_names.size(), false);
-  for (const std::string& group : groups) {
-    const auto found = std::find(model.group_names.begin(), model.group_names.end(), group);
-    if (found == model.group_names.end()) {
-      std::string known;
-      for (const std::string& name : model.group_names) {
-        known += (known.empty() ? "" : ", ") + name;
-      }
-      return Error{ErrorCode::invalid_option,
-                   "--only: the model has no group '" + group + "'" +
-                       (known.empty() ? ", nor any other" : "; it has " + known)};
-    }
-    is_chosen_group[static_cast<std::size_t>(found - model.group_names.begin())] = true;
-  }
-  std::vector<bool> is_chosen(model.positions.size(), false);
-  for (std::size_t f = 0; f < model.face_count(); ++f) {
-    if (is_chosen_group[model.face_groups[f]]) {
-      for (const Index v : model.face(f)) {
-        is_chosen[v] = true;
-      }
-    }
-  }
-  for (Index v = 0; v < is_chosen.size(); ++v) {
-    if (is_chosen[v]) {
-      chosen.push_back(v);
-    }
-  }
-  return chosen;
-}
-
-std::vector<Vec3> at(std::span<const Vec3> positions, std::span<const Index> indices) {
-  std::vector<Vec3> result;
-  result.reserve(indices.size());
-  for (const Index i : indices) {
-    result.push_back(positions[i]);
-  }
-  return result;
+  return positions;
 }
 
 /// Deforms with the weights of a file: for each pose all P positions.
@@ -197,7 +168,10 @@ Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
   if (!stored) {
     return stored.error();
   }
-  if (Status status = belongs_to(*stored, meshes.model.positions, meshes.cage); !status) {
+  // Made for all of the model, or for the part that is chosen now too.
+  const bool for_all = stored->weights.points() == meshes.model.positions.size();
+  const std::vector<Vec3>& bound = for_all ? meshes.model.positions : meshes.bound.mesh.positions;
+  if (Status status = belongs_to(*stored, bound, meshes.cage); !status) {
     return about_file(options.weights, status.error());
   }
   std::vector<Index> all(meshes.cage.positions.size());
@@ -208,8 +182,9 @@ Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
     for (std::size_t c = 0; c < pose.size(); ++c) {
       displacements[c] -= meshes.cage.positions[c];
     }
-    results.push_back(meshes.model.positions);
-    move_points(stored->weights, all, displacements, meshes.model.positions, results.back());
+    std::vector<Vec3> moved = bound;
+    move_points(stored->weights, all, displacements, bound, moved);
+    results.push_back(for_all ? std::move(moved) : with_part(meshes, moved));
   }
   return results;
 }
@@ -218,25 +193,20 @@ Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
 Result<std::vector<std::vector<Vec3>>> deform_directly(const Options& options,
                                                        const ModelAndCage& meshes,
                                                        std::span<const std::vector<Vec3>> poses,
-                                                       std::span<const Index> chosen,
                                                        const Session& session) {
   const Result<MeanValueSolver> solver = make_solver(meshes.cage, options.binding);
   if (!solver) {
     return solver.error();
   }
-  Result<StreamedPoses> streamed =
-      deform_streaming(*solver, meshes.cage.positions, poses, at(meshes.model.positions, chosen),
-                       session.progress());
+  Result<StreamedPoses> streamed = deform_streaming(
+      *solver, meshes.cage.positions, poses, meshes.bound.mesh.positions, session.progress());
   if (!streamed) {
     return streamed.error();
   }
   warn_of_points(options.binding.cage, streamed->on_surface, streamed->undefined);
   std::vector<std::vector<Vec3>> results;
   for (const std::vector<Vec3>& moved : streamed->positions) {
-    std::vector<Vec3>& positions = results.emplace_back(meshes.model.positions);
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      positions[chosen[i]] = moved[i];
-    }
+    results.push_back(with_part(meshes, moved));
   }
   return results;
 }
@@ -296,21 +266,20 @@ int run(const Options& options, const Session& session) {
   if (!meshes) {
     return fail(meshes.error());
   }
-  const Result<std::vector<std::vector<Vec3>>> cages = read_poses(*poses, meshes->cage);
+  const Result<std::vector<std::vector<Vec3>>> cages =
+      read_poses(*poses, meshes->cage, options.binding.choice);
   if (!cages) {
     return fail(cages.error());
   }
   const std::vector<Vec3>& rest = meshes->model.positions;
-  const Result<std::vector<Index>> chosen = chosen_vertices(meshes->model, options.groups);
-  if (!chosen) {
-    return fail(chosen.error());
-  }
+  const std::span<const Index> chosen = meshes->bound.vertices;
+  const ModelChoice& choice = options.binding.choice;
   // Other formats get no normals, so that broken ones do not stand in the way.
   const bool keeps_normals = std::ranges::any_of(*poses, [&](const Pose& pose) {
     return format_of_name(options.binding.model) == format_of_name(pose.output);
   });
   const Result<FileNormals> stored_normals =
-      keeps_normals ? read_normals(options.binding.model) : FileNormals();
+      keeps_normals ? read_normals(options.binding.model, choice.pose) : FileNormals();
   if (!stored_normals) {
     return fail(stored_normals.error());
   }
@@ -321,7 +290,7 @@ int run(const Options& options, const Session& session) {
     }
   }
   Result<std::vector<std::vector<Vec3>>> results =
-      options.weights.empty() ? deform_directly(options, *meshes, *cages, *chosen, session)
+      options.weights.empty() ? deform_directly(options, *meshes, *cages, session)
                               : apply_stored(options, *meshes, *cages);
   if (!results) {
     return fail(results.error());
@@ -332,10 +301,10 @@ int run(const Options& options, const Session& session) {
                                           stored_normals->normals});
   }
   for (std::size_t i = 0; i < poses->size(); ++i) {
-    keep_others(rest, *chosen, (*results)[i]);
+    keep_others(rest, chosen, (*results)[i]);
     normals.update((*results)[i]);
     if (Status status = write_moved(options.binding.model, meshes->model, (*results)[i],
-                                    normals.normals(), (*poses)[i].output);
+                                    normals.normals(), (*poses)[i].output, choice.pose);
         !status) {
       return fail(status.error());
     }
@@ -364,8 +333,6 @@ void add_deform(CLI::App& app, Session& session) {
                    "or a name with * for the name of the deformed cage")
       ->required();
   command->add_option("--weights", options->weights, "Use the weights that bind has stored");
-  command->add_option("--only", options->groups,
-                      "Move only the vertices of this group of the model; repeatable");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };
   });

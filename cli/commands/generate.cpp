@@ -15,6 +15,12 @@ void add_generate(CLI::App& app, Session& session) {
   command->add_option("-o,--output", arguments->output, "OBJ, PLY, STL or OFF file to write")
       ->required();
   add_cage_options(*command, *arguments);
+  add_pose_option(*command, arguments->choice);
+  add_only_option(*command, arguments->choice,
+                  "Make the cage for this object or group of the model");
+  for (const char* name : {"--pose", "--only"}) {
+    command->get_option(name)->group(std::string(title_of(OptionGroup::model)));
+  }
   command
       ->add_option(
           "--density", arguments->density,

@@ -1,5 +1,6 @@
 #include "json.h"
 #include "load.h"
+#include "model_choice.h"
 #include "plane_text.h"
 #include "session.h"
 
@@ -34,6 +35,7 @@ struct Options {
   std::string model;
   std::string json;
   VoxelizeOptions voxels;
+  ModelChoice choice;
 };
 
 struct NamedBox {
@@ -279,7 +281,7 @@ nlohmann::json to_json(const Info& info) {
 }
 
 int run(const Options& options, const Session& session) {
-  const auto model = load_mesh(options.model);
+  const auto model = load_chosen(options.model, options.choice);
   if (!model) {
     return fail(model.error());
   }
@@ -305,6 +307,8 @@ void add_info(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("info", "Describe a model: counts, defects, sizes, boxes");
   auto options = std::make_shared<Options>();
   command->add_option("model", options->model, "The model")->required();
+  add_pose_option(*command, options->choice);
+  add_only_option(*command, options->choice, "Look at this object or group of the model only");
   command->add_option("--json", options->json, "Write the same and more to this file as JSON");
   command
       ->add_option("--resolution", options->voxels.resolution,

@@ -1,4 +1,5 @@
 #include "load.h"
+#include "model_choice.h"
 #include "session.h"
 
 #include <cagewright/render/render.h>
@@ -16,6 +17,7 @@ namespace {
 
 struct RenderCommand {
   std::string model;
+  ModelChoice choice;
   std::string cage;
   std::string output = "cagewright.png";
   std::string beside;
@@ -88,7 +90,7 @@ Result<Image> draw(RenderCommand& command) {
     return size.error();
   }
   Scene scene;
-  const Result<PolygonMesh> model = load_mesh(command.model);
+  const Result<PolygonMesh> model = load_chosen(command.model, command.choice);
   if (!model) {
     return model.error();
   }
@@ -97,7 +99,7 @@ Result<Image> draw(RenderCommand& command) {
 
   std::optional<PolygonMesh> cage;
   if (!command.cage.empty()) {
-    Result<PolygonMesh> read = load_mesh(command.cage);
+    Result<PolygonMesh> read = load_cage(command.cage, command.choice);
     if (!read) {
       return read.error();
     }
@@ -160,6 +162,9 @@ void add_render(CLI::App& app, Session& session) {
       app.add_subcommand("render", "Draw a model, and a cage over it, as a PNG picture");
   sub->add_option("model", command->model, "The model")->required();
   sub->add_option("cage", command->cage, "A cage to draw over it");
+  add_pose_option(*sub, command->choice);
+  add_only_option(*sub, command->choice, "Draw this object or group of the model only");
+  add_cage_object_option(*sub, command->choice);
   sub->add_option("-o,--output", command->output, "The picture to write");
   sub->add_option("--beside", command->beside,
                   "A PNG picture of the same height: the new one is joined to its right");

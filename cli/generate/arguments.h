@@ -5,6 +5,8 @@
 /// options. What is no business of the library's is declared in cli/commands/generate.cpp.
 #pragma once
 
+#include "model_choice.h"
+
 #include <cagewright/cage/option_table.h>
 
 #include <CLI/CLI.hpp>
@@ -20,6 +22,7 @@ struct GenerateArguments {
   std::string model;
   std::string output;
   std::string json;
+  ModelChoice choice;
   Emit emit = Emit::cage;
   std::string density; ///< a file, or "colors"; empty: even
   GenerateOptions options;

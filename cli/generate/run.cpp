@@ -4,6 +4,7 @@
 #include "generate/report.h"
 #include "json.h"
 #include "load.h"
+#include "model_choice.h"
 
 #include "cage/decompose.h"
 #include "cage/hexahedron.h"
@@ -125,7 +126,7 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
       return fail(writable.error());
     }
   }
-  const Result<PolygonMesh> mesh = load_mesh(arguments.model);
+  const Result<PolygonMesh> mesh = load_chosen(arguments.model, arguments.choice);
   if (!mesh) {
     return fail(mesh.error());
   }

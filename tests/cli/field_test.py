@@ -66,6 +66,24 @@ READERS = [
 # glTF.
 GLTF = [
     ("F13b", "info F13_gltf_buffer.gltf", {"out": ["1280 triangles"]}),
+    ("F14b", f"deform F14_quantized.glb {POSE} -o out/x.glb", {"out": ["642 of 642"]}),
+    ("F17a", "info F17_no_default_scene.glb", {"out": ["1280 triangles"]}),
+    ("F18", "info F18_skin_moved_node.glb", {"out": ["4 x 2.163 x 2.4"]}),
+    ("F18bind", "info F18_skin_moved_node.glb --pose bind", {"out": ["triangles"]}),
+    ("F19a", "info F19_morph_mesh_weights.glb", {"out": ["6.6 x 1.623 x 1.462"]}),
+    ("F19bind", "info F19_morph_mesh_weights.glb --pose bind", {"out": ["3.6 x 1.623 x 1.462"]}),
+    ("F20", f"deform F20_same_names.glb {POSE} -o out/x.glb --only Cube", {"out": ["1284 of 1284"]}),
+    ("F20first", f"deform F20_same_names.glb {POSE} -o out/x.glb --only Cube#1", {"out": ["642 of 1284"]}),
+    ("F20none", f"deform F20_same_names.glb {POSE} -o out/x.glb --only Cylinder",
+     {"code": 2, "err": ["no group 'Cylinder'; it has Cube#1, Cube#2"]}),
+    ("F21", "info F21_data_in_glb.glb", {"out": ["1280 triangles"]}),
+    ("F89", "info F89_bin_type_one.glb", {"code": 2, "err": ["F89_bin_type_one.glb", "buffer 0"]}),
+    ("F96", "info 'F96_Box With Spaces.gltf'", {"out": ["triangles"]}),
+    ("F96b", "info F96_escaped.gltf", {"out": ["triangles"]}),
+    ("F101", "info F101_meshopt.glb", {"code": 2, "err": ["meshopt", "without compression"]}),
+    ("F101b", "info F101_draco.glb", {"code": 2, "err": ["draco", "without compression"]}),
+    ("N9", "bind F64_all_in_one.glb F64_all_in_one.glb --cage-object Shirt_OuterCage -o out/w.npz",
+     {"out": ["model vertices bound to"], "not_err": ["nested_piece", "vertex_on_"]}),
 ]
 
 # Commands, cages from elsewhere, exit codes.

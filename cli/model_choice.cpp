@@ -1,0 +1,206 @@
+#include "model_choice.h"
+
+#include "load.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+
+namespace cagewright::cli {
+namespace {
+
+constexpr std::size_t most_listed = 20; // names in a message
+
+/// The groups that a name stands for.
+std::vector<std::size_t> groups_named(const PolygonMesh& mesh, const std::string& name) {
+  const std::vector<std::string>& names = mesh.group_names;
+  std::vector<std::size_t> found;
+  for (std::size_t g = 0; g < names.size(); ++g) {
+    if (names[g] == name) {
+      found.push_back(g);
+    }
+  }
+  const std::size_t mark = name.rfind('#');
+  if (!found.empty() || mark == std::string::npos) {
+    return found;
+  }
+  std::size_t number = 0;
+  const char* end = name.data() + name.size();
+  const auto read = std::from_chars(name.data() + mark + 1, end, number);
+  if (read.ec != std::errc() || read.ptr != end) {
+    return {};
+  }
+  const std::vector<std::size_t> alike = groups_named(mesh, name.substr(0, mark));
+  return number >= 1 && number <= alike.size() ? std::vector{alike[number - 1]}
+                                               : std::vector<std::size_t>();
+}
+
+/// The names as they can be given: those that several have with their numbers.
+std::string list_of_names(const PolygonMesh& mesh) {
+  std::map<std::string, std::size_t> counts;
+  for (const std::string& name : mesh.group_names) {
+    ++counts[name];
+  }
+  std::map<std::string, std::size_t> met;
+  std::string list;
+  for (std::size_t g = 0; g < std::min(mesh.group_names.size(), most_listed); ++g) {
+    const std::string& name = mesh.group_names[g];
+    list += (list.empty() ? "" : ", ") + name;
+    list += counts[name] > 1 ? '#' + std::to_string(++met[name]) : "";
+  }
+  const std::size_t more = mesh.group_names.size() - std::min(mesh.group_names.size(), most_listed);
+  return more > 0 ? list + " and " + std::to_string(more) + " more" : list;
+}
+
+} // namespace
+
+void add_pose_option(CLI::App& command, ModelChoice& choice) {
+  command
+      .add_option("--pose", choice.pose,
+                  "Rigged models (glTF): shown, as the joints stand in the file, with the weights "
+                  "of its shapes; or bind, as the model was bound to them")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Pose>{{"shown", Pose::shown}, {"bind", Pose::bind}}))
+      ->default_str("shown");
+}
+
+void add_only_option(CLI::App& command, ModelChoice& choice, const std::string& purpose) {
+  command.add_option("--only", choice.only,
+                     purpose + "; NAME#2 is the second of that name; repeatable");
+}
+
+void add_cage_object_option(CLI::App& command, ModelChoice& choice) {
+  command.add_option("--cage-object", choice.cage_objects,
+                     "The cage is this object of its file; where the model is in the same file, it "
+                     "is the other objects, or those of --only; NAME#2 is the second of that name; "
+                     "repeatable");
+}
+
+Result<std::vector<bool>> faces_named(const PolygonMesh& mesh, std::span<const std::string> names,
+                                      const std::string& option) {
+  std::vector<bool> is_chosen(mesh.group_names.size(), false);
+  for (const std::string& name : names) {
+    const std::vector<std::size_t> groups = groups_named(mesh, name);
+    if (groups.empty()) {
+      return Error{
+          ErrorCode::invalid_option,
+          option + ": the model has no group '" + name + "'" +
+              (mesh.group_names.empty() ? ", nor any other" : "; it has " + list_of_names(mesh))};
+    }
+    for (const std::size_t group : groups) {
+      is_chosen[group] = true;
+    }
+  }
+  std::vector<bool> faces(mesh.face_count(), false);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    faces[f] = is_chosen[mesh.face_groups[f]];
+  }
+  return faces;
+}
+
+MeshPart part_of(const PolygonMesh& mesh, const std::vector<bool>& faces) {
+  constexpr Index unused = std::numeric_limits<Index>::max();
+  std::vector<Index> number(mesh.positions.size(), unused);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    if (faces[f]) {
+      for (const Index v : mesh.face(f)) {
+        number[v] = 0;
+      }
+    }
+  }
+  MeshPart part;
+  part.mesh.group_names = mesh.group_names;
+  for (Index v = 0; v < number.size(); ++v) { // the order of the file
+    if (number[v] == unused) {
+      continue;
+    }
+    number[v] = static_cast<Index>(part.vertices.size());
+    part.vertices.push_back(v);
+    part.mesh.positions.push_back(mesh.positions[v]);
+    if (!mesh.colors.empty()) {
+      part.mesh.colors.push_back(mesh.colors[v]);
+    }
+  }
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    if (!faces[f]) {
+      continue;
+    }
+    std::vector<Index> corners(mesh.face(f).begin(), mesh.face(f).end());
+    for (Index& v : corners) {
+      v = number[v];
+    }
+    part.mesh.add_face(corners);
+    if (!mesh.face_groups.empty()) {
+      part.mesh.face_groups.push_back(mesh.face_groups[f]);
+    }
+  }
+  return part;
+}
+
+Result<PolygonMesh> load_chosen(const std::string& path, const ModelChoice& choice) {
+  Result<PolygonMesh> mesh = load_mesh(path, choice.pose);
+  if (!mesh || choice.only.empty()) {
+    return mesh;
+  }
+  const Result<std::vector<bool>> faces = faces_named(*mesh, choice.only, "--only");
+  if (!faces) {
+    return in_file(path, faces.error());
+  }
+  return part_of(*mesh, *faces).mesh;
+}
+
+Result<PolygonMesh> load_cage(const std::string& path, const ModelChoice& choice) {
+  Result<PolygonMesh> mesh = load_mesh(path, choice.pose);
+  if (!mesh || choice.cage_objects.empty()) {
+    return mesh;
+  }
+  const Result<std::vector<bool>> faces = faces_named(*mesh, choice.cage_objects, "--cage-object");
+  if (!faces) {
+    return in_file(path, faces.error());
+  }
+  return part_of(*mesh, *faces).mesh;
+}
+
+Result<ModelAndCage> load_model_and_cage(const std::string& model, const std::string& cage,
+                                         const ModelChoice& choice) {
+  Result<PolygonMesh> whole = load_mesh(model, choice.pose);
+  if (!whole) {
+    return whole.error();
+  }
+  Result<PolygonMesh> around = load_cage(cage, choice);
+  if (!around) {
+    return around.error();
+  }
+  ModelAndCage meshes{*std::move(whole), {}, *std::move(around)};
+  std::error_code ignored;
+  const bool is_beside_cage =
+      !choice.cage_objects.empty() && std::filesystem::equivalent(model, cage, ignored);
+  if (choice.only.empty() && !is_beside_cage) {
+    meshes.bound.mesh = meshes.model;
+    meshes.bound.vertices.resize(meshes.model.positions.size());
+    std::iota(meshes.bound.vertices.begin(), meshes.bound.vertices.end(), Index(0));
+    return meshes;
+  }
+  Result<std::vector<bool>> faces =
+      choice.only.empty() ? faces_named(meshes.model, choice.cage_objects, "--cage-object")
+                          : faces_named(meshes.model, choice.only, "--only");
+  if (!faces) {
+    return in_file(model, faces.error());
+  }
+  if (choice.only.empty()) {
+    faces->flip();
+  }
+  meshes.bound = part_of(meshes.model, *faces);
+  if (meshes.bound.mesh.face_count() == 0) {
+    return Error{ErrorCode::invalid_option,
+                 model + ": --cage-object: all objects of the file are the cage; nothing is left "
+                         "for the model"};
+  }
+  return meshes;
+}
+
+} // namespace cagewright::cli
