@@ -68,7 +68,9 @@ function(cagewright_add_tests name)
   add_executable(${name}_test ${T_FILES})
   target_link_libraries(${name}_test PRIVATE
     cagewright_compiler cagewright_test_support ${T_USES} ${T_LINKS} GTest::gtest_main)
-  target_precompile_headers(${name}_test REUSE_FROM cagewright_test_precompiled)
+  if(NOT cagewright_app IN_LIST T_LINKS) # Qt asks for code of another kind
+    target_precompile_headers(${name}_test REUSE_FROM cagewright_test_precompiled)
+  endif()
   # Limits are for cases that hang, and long enough for a sanitizer build on a busy machine.
   set(common TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 600)
   list(JOIN T_SLOW ":" slow)

@@ -30,11 +30,11 @@ struct Options {
 
 /// The cage changed as a whole so that it encloses the model of --fit.
 Result<PolygonMesh> fitted(PolygonMesh cage, const Options& options, const Session& session) {
-  const Result<TriangleMesh> model = load_triangles(options.fit);
+  const Result<PolygonMesh> model = load_mesh(options.fit);
   if (!model) {
     return model.error();
   }
-  const std::optional<CageFit> fit = fit_cage(cage, *model);
+  const std::optional<CageFit> fit = fit_cage(cage, to_triangle_mesh(*model));
   if (!fit) {
     warn(one_line(options.input) +
          ": no scale, turn or shift would make this cage fit better; it is left as it is");
