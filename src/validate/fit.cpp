@@ -1,5 +1,6 @@
 #include <cagewright/validate/fit.h>
 
+#include "core/maths.h"
 #include "core/parallel.h"
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
@@ -94,7 +95,7 @@ bool winds_round(TriangleView cage, const Vec3& p) {
     const double la = a.norm();
     const double lb = b.norm();
     const double lc = c.norm();
-    sum += 2 * std::atan2(a.dot(b.cross(c)),
+    sum += 2 * maths::atan2(a.dot(b.cross(c)),
                           la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return std::abs(sum) >= 2 * std::numbers::pi;
@@ -194,7 +195,7 @@ private:
 
   /// To two digits: nobody needs more.
   static double rounded(double factor) {
-    const double unit = std::pow(10, std::floor(std::log10(factor)) - 1);
+    const double unit = maths::pow(10, std::floor(maths::log(factor) / maths::log(10)) - 1);
     return std::ceil(factor / unit) * unit;
   }
 

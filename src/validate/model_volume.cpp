@@ -1,5 +1,6 @@
 #include <cagewright/validate/model_volume.h>
 
+#include "core/maths.h"
 #include "core/parallel.h"
 #include "mesh/topology.h"
 #include "validate/containment.h"
@@ -239,7 +240,7 @@ ModelVolume model_volume(TriangleView model) {
   const double exact = is_closed ? std::abs(signed_volume(model)) : 0;
   // What winds round nothing has but the volume of its rounding.
   constexpr double rounding = 1e-12;
-  const bool has_volume = exact > rounding * std::pow(box.diagonal().norm(), 3);
+  const bool has_volume = exact > rounding * maths::cube(box.diagonal().norm());
   if (is_closed && winds_once && (counts.enclosed == 0 || counts.once > 0)) {
     return {has_volume ? exact : 0, VolumeMethod::exact};
   }

@@ -285,6 +285,7 @@ private:
   }
 
   void find_self_intersections() {
+    find_folded_faces(); // first: what a fold crosses besides is no news
     const Findings findings = parallel_reduce_ordered(
         0, cage_.face_count(), 64, Findings(),
         [&](std::size_t first, std::size_t last) {
@@ -296,24 +297,32 @@ private:
         },
         [&](Findings& all, const Findings& part) { all.append(part, options_.max_listed); });
     take(ViolationKind::self_intersection, findings);
-    find_folded_faces();
   }
 
   void find_folded_faces() {
+    folded_cuttings_.assign(cage_.face_count(), 0);
     for (Index f = 0; f < cage_.face_count() && !progress_.cancelled(); ++f) {
-      bool folded = false;
+      std::uint8_t folded = 0;
       for (std::size_t i = parts_.first_of_face[f]; i < parts_.first_of_face[f + 1]; ++i) {
-        for (std::size_t k = i + 1; k < parts_.first_of_face[f + 1] && !folded; ++k) {
+        for (std::size_t k = i + 1; k < parts_.first_of_face[f + 1]; ++k) {
           const CagePart& a = parts_.parts[i];
           const CagePart& b = parts_.parts[k];
-          folded = !a.is_degenerate && !b.is_degenerate && (a.cuttings & b.cuttings) != 0 &&
-                   parts_cross(parts_, a, b);
+          if (!a.is_degenerate && !b.is_degenerate && (a.cuttings & b.cuttings) != 0 &&
+              parts_cross(parts_, a, b)) {
+            folded = static_cast<std::uint8_t>(folded | (a.cuttings & b.cuttings));
+          }
         }
       }
-      if (folded) {
+      folded_cuttings_[f] = folded;
+      if (folded != 0) {
         add_face(ViolationKind::folded_face, f);
       }
     }
+  }
+
+  /// Whether the part is there only when its face is cut as it folds over.
+  [[nodiscard]] bool is_of_fold(const CagePart& part) const {
+    return (part.cuttings & ~folded_cuttings_[part.face]) == 0;
   }
 
   /// The faces beyond f that face f crosses, each once.
@@ -321,7 +330,7 @@ private:
     std::map<Index, Vec3> crossed;
     for (std::size_t i = parts_.first_of_face[f]; i < parts_.first_of_face[f + 1]; ++i) {
       const CagePart& part = parts_.parts[i];
-      if (part.is_degenerate) {
+      if (part.is_degenerate || is_of_fold(part)) {
         continue;
       }
       const auto& corners = parts_.bvh.corners(static_cast<Index>(i));
@@ -330,7 +339,8 @@ private:
       box.extend(corners[2]);
       parts_.bvh.visit_box(box, [&](Index k) {
         const CagePart& other = parts_.parts[k];
-        if (other.face <= f || other.is_degenerate || crossed.contains(other.face)) {
+        if (other.face <= f || other.is_degenerate || is_of_fold(other) ||
+            crossed.contains(other.face)) {
           return true;
         }
         if (parts_cross(parts_, part, other)) {
@@ -550,6 +560,7 @@ private:
   PolygonMesh cage_;           // the usable faces
   std::vector<Index> face_of_; // their indices in the given cage
   CageParts parts_;
+  std::vector<std::uint8_t> folded_cuttings_; // of each face: see CagePart::cuttings
   TopologyReport topology_;
   Closure closure_ = Closure::open;
   std::vector<int> weights_;    // of the parts' crossings

@@ -62,7 +62,7 @@ class ImproveOf : public testing::TestWithParam<Model> {};
 
 TEST_P(ImproveOf, GivesAValidCageWithinTheBudgetThatKeepsTheClearance) {
   const TriangleMesh& model = GetParam().mesh;
-  for (const int vertices : {16, 40}) {
+  for (const int vertices : {20, 40}) {
     for (const double clearance : {0.002, 0.02}) {
       const Result<Improved> made =
           improved(model, {.vertices = vertices, .clearance = clearance, .rounds = 1});

@@ -242,8 +242,8 @@ INSTANTIATE_TEST_SUITE_P(
         {ascii_ply("0 0 0\n1 0 0\n0 1 0\n3 0 1 2.5\n"),
          "file:13: face 0 refers to vertex 2.5, but there are 3; export the model again"},
         {ascii_ply("0 0 0\n1 0 0\n0.00 1.000 0.000\n"),
-         "file: the header promises 1 row of the element 'face', but the file ends before; it is "
-         "cut short; export the model again"},
+         "file:13: the file ends after 0 of 1 rows of the element 'face'; it is cut short; export "
+         "the model again"},
         {"ply\nformat ascii 1.0\nelement vertex 1\n" + xyz + "end_header\n0 0 0\n",
          "file: has no faces; a surface is needed: export the model as a mesh, not as points "
          "or curves"}}));

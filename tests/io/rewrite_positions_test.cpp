@@ -260,7 +260,7 @@ TEST(ReadNormals, GivesEachVertexItsOwnOfASharedOne) {
   constexpr Index none = FileNormals::none;
   EXPECT_EQ(normals->normals, (std::vector<Vec3>{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 1, 0}}));
   EXPECT_EQ(normals->in_file, (std::vector<Index>{0, 0, 0, 2}));
-  EXPECT_EQ(normals->of_corner, (std::vector<Index>{0, 1, 2, 0, 3, none, none, none}));
+  EXPECT_EQ(normals->of_corner, (std::vector<Index>{0, 1, 2, 0, 3, none, none}));
 }
 
 TEST(ReadNormals, GivesNoneForAFileWithoutThem) {
