@@ -126,7 +126,8 @@ std::string counted(std::size_t count, const char* one, const char* many) {
 std::optional<FileNote> size_hint(const ValidityReport& report, const PolygonMesh& cage,
                                   TriangleView model, const JudgedFiles& files) {
   const double size = relative_size(cage, model);
-  constexpr double suspicious = 3;
+  // A valid cage may be wide on purpose; of this size hardly.
+  constexpr double suspicious = 8;
   const bool is_beside = report.count(ViolationKind::vertex_outside) > 0;
   if (!is_beside && size < suspicious) {
     return std::nullopt;

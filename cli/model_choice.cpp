@@ -65,7 +65,7 @@ void add_pose_option(CLI::App& command, ModelChoice& choice) {
                   "of its shapes; or bind, as the model was bound to them")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Pose>{{"shown", Pose::shown}, {"bind", Pose::bind}}))
-      ->default_str("shown");
+      ->option_text("shown|bind=shown");
 }
 
 void add_only_option(CLI::App& command, ModelChoice& choice, const std::string& purpose) {

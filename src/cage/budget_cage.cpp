@@ -208,6 +208,19 @@ Result<BudgetCage> make_one_piece(TriangleView model, const BudgetCageOptions& o
   if (!made || !is_chosen || options.max_gap > 0) {
     return made;
   }
+  // A mirrored cage needs vertices on its plane: so few may not do.
+  if (!made->report.reached && made->mirror && !plane && options.symmetry == Symmetry::automatic) {
+    BudgetCageOptions whole = options;
+    whole.symmetry = Symmetry::off;
+    Result<BudgetCage> again = make_from_one_start(model, whole, plane, progress.part(once, usual));
+    if (!again && again.error().code == ErrorCode::cancelled) {
+      return again;
+    }
+    if (again && again->report.reached) {
+      again->why_not_mirrored = "a mirrored cage takes more vertices than asked for";
+      return again;
+    }
+  }
   if (made->rival && !options.quads) {
     made = better_of_two(*std::move(made), model, options, progress.part(once, usual));
     if (!made) {

@@ -155,7 +155,8 @@ Result<TriangleMesh> start_from_envelope(TriangleView model, const BudgetCageOpt
   start.diagonal = diagonal;
   constexpr double first = 0.3; // of the time
   Result<Envelope> envelope_made = envelope(model, start, progress.part(0, first));
-  const bool is_open = options.resolution == 0 && options.closing == 0 &&
+  // Which start makes good quads a draft of triangles does not tell.
+  const bool is_open = !options.quads && options.resolution == 0 && options.closing == 0 &&
                        options.envelope_vertices == 0 && options.max_gap == 0 &&
                        vertices_of(budget) > 0;
   if (envelope_made && is_open) {

@@ -451,7 +451,8 @@ private:
                                const Vec3& contact) const {
     const Vec3 area_a = face_area(a, f);
     const Vec3 area_b = face_area(b, g);
-    const auto [small, large] = std::minmax(area_a.norm(), area_b.norm());
+    const auto [small, large] = std::minmax(
+        {area_a.norm(), area_b.norm()}); // a list: of temporaries it would keep references
     const double reach = options_.max_distance * std::sqrt((small + large) / 2);
     const Vec3 middle = (face_center(a, f) + face_center(b, g)) / 2;
     return angle_between(area_a, area_b) >= options_.min_facing_angle * degree &&

@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -277,7 +278,9 @@ Result<FileBytes> read_start(const std::filesystem::path& path) {
 /// Whether weights reproduce the points from the cage at rest, as all coordinates do.
 Status gives(const FloatWeights& weights, std::span<const Vec3> points,
              std::span<const Vec3> cage) {
-  constexpr double tolerance = 1e-4; // of the cage's size: floats, and some digits lost on the way
+  // Of the cage's size, and of the magnitude of the weights, which far outside is large: floats,
+  // and some digits lost on the way.
+  constexpr double tolerance = 1e-4;
   if (weights.cage_vertices() != cage.size()) {
     return Error{ErrorCode::mismatch, "the weights are for a cage of " +
                                           std::to_string(weights.cage_vertices()) +
@@ -291,13 +294,16 @@ Status gives(const FloatWeights& weights, std::span<const Vec3> points,
   for (std::size_t i = 0; i < points.size(); ++i) {
     Vec3 sum = Vec3::Zero();
     double total = 0;
+    double magnitude = 0;
     for (std::size_t c = 0; c < cage.size(); ++c) {
       const double weight = weights.at(i, c);
       sum += weight * cage[c];
       total += weight;
+      magnitude += std::abs(weight);
     }
+    const double allowed = tolerance * box.sizes().norm() * std::max(1.0, magnitude);
     const bool has_weights = total != 0; // else it stays at rest
-    if (has_weights && !((sum - points[i]).norm() <= tolerance * box.sizes().norm())) {
+    if (has_weights && !((sum - points[i]).norm() <= allowed)) {
       return Error{ErrorCode::mismatch, "the weights are for another model or cage: they do not "
                                         "give its vertex " +
                                             std::to_string(i) + "; bind the model again"};

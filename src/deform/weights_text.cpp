@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::string_view mean_value_kind = "mean_value";
 constexpr std::string_view csv_mark = "# cagewright weights";
+constexpr std::string_view csv_end = "# end"; // without it a file that was cut off looks whole
 constexpr std::string_view json_mark = "cagewright-weights";
 constexpr std::string_view groups_mark = "cagewright-vertex-groups";
 constexpr int version = 1;
@@ -90,7 +91,10 @@ public:
     return write(text);
   }
 
-  Status finish() override { return commit(); }
+  Status finish() override {
+    Status status = write(std::string(csv_end) + '\n');
+    return status ? commit() : status;
+  }
 
 private:
   std::size_t row_ = 0;
@@ -314,11 +318,13 @@ public:
     }
     stored.weights = FloatWeights(points, width);
     fill_zero(stored.weights);
+    bool is_whole = false;
     while (lines.next(line)) {
       std::size_t row = 0;
       std::size_t column = 0;
       double weight = 0;
-      if (line.empty()) {
+      if (line.empty() || line == csv_end) {
+        is_whole = is_whole || !line.empty();
         continue;
       }
       if (!take(line, row) || !take(line, column) || !take(line, weight) || !line.empty() ||
@@ -327,6 +333,9 @@ public:
                               "weight");
       }
       set(stored.weights, row, column, weight);
+    }
+    if (!is_whole) {
+      return damaged("its last line, '# end', is missing");
     }
     return stored;
   }

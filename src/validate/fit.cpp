@@ -96,7 +96,7 @@ bool winds_round(TriangleView cage, const Vec3& p) {
     const double lb = b.norm();
     const double lc = c.norm();
     sum += 2 * maths::atan2(a.dot(b.cross(c)),
-                          la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+                            la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return std::abs(sum) >= 2 * std::numbers::pi;
 }

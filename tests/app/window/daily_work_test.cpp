@@ -343,7 +343,7 @@ TEST_F(DailyWork, RecoversAProjectUnderItsOwnName) {
   EXPECT_EQ(session().project_path(), path("work.cagewright").toStdString());
   EXPECT_TRUE(window->isWindowModified());
   press(Qt::Key_S, Qt::ControlModifier);
-  EXPECT_FALSE(window->isWindowModified());
+  EXPECT_TRUE(wait_until([this] { return !window->isWindowModified(); }));
 }
 
 } // namespace
