@@ -1,6 +1,6 @@
 #include "binding.h"
-#include "cage_words.h"
 #include "load.h"
+#include "report/cage_words.h"
 
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/validate_cage.h>

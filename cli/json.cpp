@@ -41,19 +41,6 @@ nlohmann::json place_of(std::string_view text) {
 
 } // namespace
 
-nlohmann::json json_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-nlohmann::json json_of(const OrientedBox& box) {
-  return {{"center", json_of(box.center)},
-          {"axes",
-           {json_of(Vec3(box.axes.col(0))), json_of(Vec3(box.axes.col(1))),
-            json_of(Vec3(box.axes.col(2)))}},
-          {"half_lengths", json_of(box.half)},
-          {"volume", box.volume()}};
-}
-
 nlohmann::json json_of_failure(std::string_view code, const std::string& message,
                                std::span<const std::string> words) {
   nlohmann::json json = {{"code", code},
@@ -73,10 +60,6 @@ nlohmann::json json_of_failure(std::string_view code, const std::string& message
     json["remedy"] = text.substr(remedy + 2);
   }
   return json;
-}
-
-std::string text_of(const nlohmann::json& json, int indent) {
-  return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 Status write_json(const std::string& path, const nlohmann::json& json, int indent) {

@@ -1,8 +1,9 @@
-#include "cage_figures.h"
-#include "cage_words.h"
 #include "json.h"
 #include "load.h"
 #include "model_choice.h"
+#include "report/cage_figures.h"
+#include "report/cage_words.h"
+#include "report/verdict.h"
 #include "session.h"
 
 #include <cagewright/mesh/triangulate.h>
@@ -57,49 +58,6 @@ std::string report_text(const ValidityReport& report, const JudgedFiles& files) 
   return text;
 }
 
-nlohmann::json to_json(const Violation& violation, const JudgedFiles& files) {
-  nlohmann::json elements = nlohmann::json::array();
-  for (const Index element : violation.elements) {
-    if (element != Violation::none) {
-      elements.push_back(element);
-    }
-  }
-  const std::string what = headline(violation.kind, 1).substr(2); // without the count
-  const std::string where = describe(violation);
-  return {{"kind", name_of(violation.kind)},
-          {"elements", elements},
-          {"place", json_of(violation.place)},
-          {"file", file_of(violation.kind, files)},
-          {"message", where.empty() ? what : what + ": " + where},
-          {"remedy", remedy(violation.kind, files)}};
-}
-
-nlohmann::json to_json(const ValidityReport& report, const JudgedFiles& files) {
-  nlohmann::json json = {{"valid", report.valid()},
-                         {"containment_approximate", report.containment_approximate},
-                         {"merged_vertices", report.merged_vertices},
-                         {"loose_vertices", report.loose_vertices},
-                         {"loose_model_vertices", report.loose_model_vertices},
-                         {"counts", nlohmann::json::object()},
-                         {"violations", nlohmann::json::array()}};
-  for (std::size_t k = 0; k < violation_kinds; ++k) {
-    json["counts"][name_of(static_cast<ViolationKind>(k))] = report.counts[k];
-  }
-  for (const Violation& violation : report.violations) {
-    json["violations"].push_back(to_json(violation, files));
-  }
-  return json;
-}
-
-/// Triangles of the model were judged; the user knows its faces.
-void name_model_faces(ValidityReport& report, const Triangulation& model) {
-  for (Violation& violation : report.violations) {
-    if (violation.kind == ViolationKind::face_contact) {
-      violation.elements[0] = model.face_of[violation.elements[0]];
-    }
-  }
-}
-
 int run(const Options& options, const Session& session) {
   const Result<ModelAndCage> meshes =
       load_model_and_cage(options.files.model, options.files.cage, options.choice);
@@ -118,7 +76,7 @@ int run(const Options& options, const Session& session) {
   const std::vector<FileNote> notes = hints(*report, *cage, view, options.files);
   const CageMetrics metrics = measure_cage(report->merged_vertices > 0 ? weld(*cage) : *cage, view);
   if (!options.json.empty()) {
-    nlohmann::json json = to_json(*report, options.files);
+    nlohmann::json json = json_of(*report, options.files);
     json["cage"] = figures_as_json(metrics);
     json["notes"] = notes_as_json();
     for (const FileNote& note : notes) {

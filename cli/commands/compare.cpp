@@ -1,7 +1,7 @@
-#include "cage_figures.h"
 #include "json.h"
 #include "load.h"
 #include "model_choice.h"
+#include "report/compared_cage.h"
 #include "session.h"
 
 #include <cagewright/deform/standard_poses.h>
@@ -32,46 +32,6 @@ struct Options {
   ModelChoice choice;
 };
 
-/// All that is said of one cage.
-struct Compared {
-  std::string path;
-  ValidityReport validity;
-  std::size_t faces = 0; ///< as the file has them
-  std::size_t quads = 0;
-  CageMetrics metrics;
-  std::optional<PoseErrors> poses; ///< none: not asked for, or the cage cannot carry a model
-};
-
-Result<Compared> describe(const std::string& path, TriangleView model, const ModelVolume& volume,
-                          bool with_poses, const Progress& progress) {
-  const Result<PolygonMesh> cage = load_mesh(path);
-  if (!cage) {
-    return cage.error();
-  }
-  Compared compared;
-  compared.path = path;
-  compared.faces = cage->face_count();
-  for (std::size_t f = 0; f < cage->face_count(); ++f) {
-    compared.quads += cage->face(f).size() == 4 ? 1 : 0;
-  }
-  Result<ValidityReport> report = validate_cage(
-      *cage, model, {.allow_pieces = true, .weld = true, .max_listed = 0}, progress.part(0, 0.4));
-  if (!report) {
-    return report.error();
-  }
-  compared.validity = std::move(*report);
-  compared.metrics = measure_cage(*cage, model, volume);
-  if (with_poses) {
-    const Result<PoseErrors> poses = pose_errors(*cage, model.positions, progress.part(0.6, 1));
-    if (poses) {
-      compared.poses = *poses;
-    } else if (poses.error().code == ErrorCode::cancelled) {
-      return poses.error();
-    }
-  }
-  return compared;
-}
-
 const char* first_violation(const ValidityReport& report) {
   for (std::size_t k = 0; k < violation_kinds; ++k) {
     if (report.counts[k] > 0) {
@@ -84,59 +44,60 @@ const char* first_violation(const ValidityReport& report) {
 /// The rows of the table: what it is, and how it reads for a cage.
 struct Row {
   std::string title;
-  std::string (*cell)(const Compared& cage);
+  std::string (*cell)(const ComparedCage& cage);
 };
 
 std::string percent(double fraction) {
   return fmt::format("{:.3f}", 100 * fraction);
 }
 
-std::string pose_cell(const Compared& cage, StandardPose pose, double PoseError::*which) {
+std::string pose_cell(const ComparedCage& cage, StandardPose pose, double PoseError::*which) {
   return cage.poses ? percent(cage.poses->of[static_cast<std::size_t>(pose)].*which) : "-";
 }
 
 const std::vector<Row>& rows() {
   static const std::vector<Row> table = {
-      {"valid", [](const Compared& c) -> std::string { return c.validity.valid() ? "yes" : "NO"; }},
-      {"vertices", [](const Compared& c) { return fmt::format("{}", c.metrics.vertices); }},
-      {"faces", [](const Compared& c) { return fmt::format("{}", c.faces); }},
-      {"quads", [](const Compared& c) { return fmt::format("{}", c.quads); }},
+      {"valid",
+       [](const ComparedCage& c) -> std::string { return c.validity.valid() ? "yes" : "NO"; }},
+      {"vertices", [](const ComparedCage& c) { return fmt::format("{}", c.metrics.vertices); }},
+      {"faces", [](const ComparedCage& c) { return fmt::format("{}", c.faces); }},
+      {"quads", [](const ComparedCage& c) { return fmt::format("{}", c.quads); }},
       {"volume ratio",
-       [](const Compared& c) {
+       [](const ComparedCage& c) {
          return c.metrics.volume_ratio != 0 ? fmt::format("{:.3f}", c.metrics.volume_ratio) : "-";
        }},
-      {"least gap %", [](const Compared& c) { return percent(c.metrics.clearance); }},
-      {"mean gap %", [](const Compared& c) { return percent(c.metrics.mean_distance); }},
-      {"greatest gap %", [](const Compared& c) { return percent(c.metrics.max_distance); }},
+      {"least gap %", [](const ComparedCage& c) { return percent(c.metrics.clearance); }},
+      {"mean gap %", [](const ComparedCage& c) { return percent(c.metrics.mean_distance); }},
+      {"greatest gap %", [](const ComparedCage& c) { return percent(c.metrics.max_distance); }},
       {"webbing %",
-       [](const Compared& c) { return fmt::format("{:.1f}", 100 * c.metrics.webbing); }},
+       [](const ComparedCage& c) { return fmt::format("{:.1f}", 100 * c.metrics.webbing); }},
       {"2r/R least",
-       [](const Compared& c) { return fmt::format("{:.3f}", c.metrics.min_quality); }},
+       [](const ComparedCage& c) { return fmt::format("{:.3f}", c.metrics.min_quality); }},
       {"2r/R 5th percentile",
-       [](const Compared& c) { return fmt::format("{:.3f}", c.metrics.low_quality); }},
+       [](const ComparedCage& c) { return fmt::format("{:.3f}", c.metrics.low_quality); }},
       {"valence, greatest",
-       [](const Compared& c) { return fmt::format("{}", c.metrics.max_valence); }},
+       [](const ComparedCage& c) { return fmt::format("{}", c.metrics.max_valence); }},
       {"bend: mean error %",
-       [](const Compared& c) { return pose_cell(c, StandardPose::bend, &PoseError::mean); }},
+       [](const ComparedCage& c) { return pose_cell(c, StandardPose::bend, &PoseError::mean); }},
       {"bend: greatest %",
-       [](const Compared& c) { return pose_cell(c, StandardPose::bend, &PoseError::max); }},
+       [](const ComparedCage& c) { return pose_cell(c, StandardPose::bend, &PoseError::max); }},
       {"twist: mean error %",
-       [](const Compared& c) { return pose_cell(c, StandardPose::twist, &PoseError::mean); }},
+       [](const ComparedCage& c) { return pose_cell(c, StandardPose::twist, &PoseError::mean); }},
       {"twist: greatest %",
-       [](const Compared& c) { return pose_cell(c, StandardPose::twist, &PoseError::max); }},
+       [](const ComparedCage& c) { return pose_cell(c, StandardPose::twist, &PoseError::max); }},
   };
   return table;
 }
 
-std::string as_text(const std::vector<Compared>& cages) {
+std::string as_text(const std::vector<ComparedCage>& cages) {
   std::size_t left = 0;
   for (const Row& row : rows()) {
     left = std::max(left, row.title.size());
   }
   std::vector<std::string> names;
   std::string text(left, ' ');
-  for (const Compared& cage : cages) {
-    names.push_back(std::filesystem::path(cage.path).filename().string());
+  for (const ComparedCage& cage : cages) {
+    names.push_back(std::filesystem::path(cage.name).filename().string());
     text += fmt::format("  {:>9}", names.back());
   }
   text += "\n";
@@ -148,39 +109,14 @@ std::string as_text(const std::vector<Compared>& cages) {
     }
     text += "\n";
   }
-  for (const Compared& cage : cages) {
+  for (const ComparedCage& cage : cages) {
     if (!cage.validity.valid()) {
       text +=
           fmt::format("{}: not a valid cage of this model ({}); 'cagewright check' says where\n",
-                      cage.path, first_violation(cage.validity));
+                      cage.name, first_violation(cage.validity));
     }
   }
   return text + "Gaps and errors are in % of the model's diagonal.\n";
-}
-
-nlohmann::json as_json(const Compared& cage) {
-  nlohmann::json json = figures_as_json(cage.metrics);
-  json["file"] = cage.path;
-  json["valid"] = cage.validity.valid();
-  json["triangles"] = cage.metrics.faces;
-  json["faces"] = cage.faces;
-  json["quads"] = cage.quads;
-  json["violations"] = nlohmann::json::object();
-  for (std::size_t k = 0; k < violation_kinds; ++k) {
-    if (cage.validity.counts[k] > 0) {
-      json["violations"][name_of(static_cast<ViolationKind>(k))] = cage.validity.counts[k];
-    }
-  }
-  json["poses"] = nullptr;
-  if (cage.poses) {
-    json["poses"] = {{"undefined", cage.poses->undefined}};
-    for (const StandardPose pose : standard_poses) {
-      const PoseError& error = cage.poses->of[static_cast<std::size_t>(pose)];
-      json["poses"][std::string(name_of(pose))] = {{"mean_error", error.mean},
-                                                   {"max_error", error.max}};
-    }
-  }
-  return json;
 }
 
 int run(const Options& options, const Session& session) {
@@ -191,16 +127,20 @@ int run(const Options& options, const Session& session) {
   const TriangleMesh model = to_triangle_mesh(*mesh);
   const ModelVolume volume = model_volume(model);
   const Progress progress = session.progress();
-  std::vector<Compared> cages;
+  std::vector<ComparedCage> cages;
   const auto count = static_cast<double>(options.cages.size());
   for (std::size_t i = 0; i < options.cages.size(); ++i) {
-    Result<Compared> cage =
-        describe(options.cages[i], model, volume, !options.no_poses,
-                 progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+    const Result<PolygonMesh> cage = load_mesh(options.cages[i]);
     if (!cage) {
       return fail(cage.error());
     }
-    cages.push_back(std::move(*cage));
+    Result<ComparedCage> compared = compare_cage(
+        options.cages[i], *cage, model, volume, !options.no_poses,
+        progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+    if (!compared) {
+      return fail(compared.error());
+    }
+    cages.push_back(std::move(*compared));
   }
   progress(1, "done");
   if (!options.json.empty()) {
@@ -209,8 +149,8 @@ int run(const Options& options, const Session& session) {
                            {"model", options.model},
                            {"notes", notes_as_json()},
                            {"cages", nlohmann::json::array()}};
-    for (const Compared& cage : cages) {
-      json["cages"].push_back(as_json(cage));
+    for (const ComparedCage& cage : cages) {
+      json["cages"].push_back(json_of(cage));
     }
     if (const Status written = write_json(options.json, json); !written) {
       return fail(written.error());

@@ -1,10 +1,10 @@
 #include "generate/run.h"
 
 #include "generate/density.h"
-#include "generate/report.h"
 #include "json.h"
 #include "load.h"
 #include "model_choice.h"
+#include "report/cage_report.h"
 
 #include "cage/decompose.h"
 #include "cage/hexahedron.h"

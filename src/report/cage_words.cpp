@@ -1,4 +1,4 @@
-#include "cage_words.h"
+#include "report/cage_words.h"
 
 #include "io/source.h"
 #include <cagewright/validate/fit.h>
@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-namespace cagewright::cli {
+namespace cagewright {
 namespace {
 
 /// What the elements of a violation are, in words.
@@ -221,4 +221,4 @@ std::vector<FileNote> hints(const ValidityReport& report, const PolygonMesh& cag
   return notes;
 }
 
-} // namespace cagewright::cli
+} // namespace cagewright

@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace cagewright::cli {
+namespace cagewright {
 
 /// Boxes, cuts, f(x) of every box and axis, in the model's own units.
 nlohmann::json to_json(const BoxDecomposition& boxes, const std::vector<int>& cover);
@@ -20,4 +20,4 @@ nlohmann::json to_json(const GeneratedCage& made, const GenerateOptions& options
 std::string summary(const BoxDecomposition& boxes, const std::vector<int>& cover);
 std::string summary(const GeneratedCage& made, const GenerateOptions& options);
 
-} // namespace cagewright::cli
+} // namespace cagewright

@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace cagewright::cli {
+namespace cagewright {
 
 /// An object with the names of CageMetrics as keys.
 nlohmann::json figures_as_json(const CageMetrics& metrics);
@@ -16,4 +16,4 @@ nlohmann::json figures_as_json(const CageMetrics& metrics);
 /// A few lines, indented by two spaces; distances in % of the model's diagonal.
 std::string figures_as_text(const CageMetrics& metrics);
 
-} // namespace cagewright::cli
+} // namespace cagewright

@@ -6,9 +6,9 @@
 
 #include <string>
 
-namespace cagewright::cli {
+namespace cagewright {
 
 /// "x = 0.5", or "0.6 x + 0.8 z = 0.5"
 std::string text_of(const MirrorPlane& plane);
 
-} // namespace cagewright::cli
+} // namespace cagewright

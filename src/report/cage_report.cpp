@@ -1,8 +1,8 @@
-#include "generate/report.h"
+#include "report/cage_report.h"
 
-#include "cage_figures.h"
-#include "json.h"
-#include "plane_text.h"
+#include "report/cage_figures.h"
+#include "report/json.h"
+#include "report/plane_text.h"
 
 #include "cage/box_cage.h"
 #include <cagewright/cage/option_table.h>
@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <variant>
 
-namespace cagewright::cli {
+namespace cagewright {
 namespace {
 
 /// Lengths and areas of a box's cross-sections, from voxels to the model's unit.
@@ -299,4 +299,4 @@ std::string summary(const GeneratedCage& made, const GenerateOptions& options) {
   return text + figures_as_text(made.figures) + times_line(made.times);
 }
 
-} // namespace cagewright::cli
+} // namespace cagewright

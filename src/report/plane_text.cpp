@@ -1,11 +1,11 @@
-#include "plane_text.h"
+#include "report/plane_text.h"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 
-namespace cagewright::cli {
+namespace cagewright {
 
 std::string text_of(const MirrorPlane& plane) {
   constexpr std::array<const char*, 3> names = {"x", "y", "z"};
@@ -21,4 +21,4 @@ std::string text_of(const MirrorPlane& plane) {
   return text + fmt::format(" = {:.6g}", plane.offset);
 }
 
-} // namespace cagewright::cli
+} // namespace cagewright

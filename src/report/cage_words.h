@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace cagewright::cli {
+namespace cagewright {
 
 /// The files that a verdict is about.
 struct JudgedFiles {
@@ -36,4 +36,4 @@ const std::string& file_of(ViolationKind kind, const JudgedFiles& files);
 std::vector<FileNote> hints(const ValidityReport& report, const PolygonMesh& cage,
                             TriangleView model, const JudgedFiles& files);
 
-} // namespace cagewright::cli
+} // namespace cagewright

@@ -1,8 +1,8 @@
-#include "cage_figures.h"
+#include "report/cage_figures.h"
 
 #include <fmt/format.h>
 
-namespace cagewright::cli {
+namespace cagewright {
 namespace {
 
 std::string volume_ratio_text(const CageMetrics& metrics) {
@@ -64,4 +64,4 @@ std::string figures_as_text(const CageMetrics& metrics) {
   return text;
 }
 
-} // namespace cagewright::cli
+} // namespace cagewright

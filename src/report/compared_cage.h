@@ -1,0 +1,43 @@
+/// \file
+/// What is said of a cage when it is compared with others.
+#pragma once
+
+#include <cagewright/core/progress.h>
+#include <cagewright/core/result.h>
+#include <cagewright/deform/standard_poses.h>
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
+#include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/model_volume.h>
+#include <cagewright/validate/validate_cage.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace cagewright {
+
+/// All that is said of one cage.
+struct ComparedCage {
+  std::string name; ///< of its file
+  ValidityReport validity;
+  std::size_t faces = 0; ///< as the file has them
+  std::size_t quads = 0;
+  CageMetrics metrics;
+  std::optional<PoseErrors> poses; ///< none: not asked for, or the cage cannot carry a model
+};
+
+/// Judges and measures a cage, and tries how well it bends and twists its model.
+///
+/// \param name    what it is called in the result
+/// \param volume  of the model
+/// Errors: cancelled.
+Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& cage,
+                                  TriangleView model, const ModelVolume& volume, bool with_poses,
+                                  const Progress& progress);
+
+nlohmann::json json_of(const ComparedCage& cage);
+
+} // namespace cagewright

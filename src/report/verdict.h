@@ -1,0 +1,20 @@
+/// \file
+/// The verdict on a cage, for programs.
+#pragma once
+
+#include "report/cage_words.h"
+#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
+
+#include <nlohmann/json.hpp>
+
+namespace cagewright {
+
+/// Whether it is valid, counts of all kinds of violations, and those that are listed, each with its
+/// elements, place, file, message and remedy.
+nlohmann::json json_of(const ValidityReport& report, const JudgedFiles& files);
+
+/// Triangles of the model were judged; the user knows its faces.
+void name_model_faces(ValidityReport& report, const Triangulation& model);
+
+} // namespace cagewright
