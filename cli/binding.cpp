@@ -11,21 +11,6 @@
 #include <string_view>
 
 namespace cagewright::cli {
-namespace {
-
-std::string list_of_violations(const ValidityReport& report) {
-  std::string list;
-  for (std::size_t k = 0; k < violation_kinds; ++k) {
-    if (report.counts[k] > 0) {
-      list += fmt::format("{}{} {}", list.empty() ? "" : ", ", report.counts[k],
-                          name_of(static_cast<ViolationKind>(k)));
-    }
-  }
-  return list;
-}
-
-} // namespace
-
 Error about_file(const std::string& path, const Error& error) {
   return {error.code, path + ": " + error.message};
 }
@@ -68,9 +53,7 @@ Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Se
   if (report->valid()) {
     return success();
   }
-  const std::string message =
-      fmt::format("{}: not a valid cage of this model: {} ('cagewright check' says where)",
-                  options.cage, list_of_violations(*report));
+  const std::string message = not_valid_in_words(*report, {options.model, options.cage});
   if (options.strict) {
     return Error{ErrorCode::no_valid_cage, message};
   }

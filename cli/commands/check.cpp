@@ -72,7 +72,7 @@ int run(const Options& options, const Session& session) {
   if (!report) {
     return fail(report.error());
   }
-  name_model_faces(*report, triangles);
+  name_model_faces(*report, triangles.face_of);
   const std::vector<FileNote> notes = hints(*report, *cage, view, options.files);
   const CageMetrics metrics = measure_cage(report->merged_vertices > 0 ? weld(*cage) : *cage, view);
   if (!options.json.empty()) {

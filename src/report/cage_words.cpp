@@ -187,6 +187,18 @@ const std::string& file_of(ViolationKind kind, const JudgedFiles& files) {
   }
 }
 
+std::string not_valid_in_words(const ValidityReport& report, const JudgedFiles& files) {
+  std::string list;
+  for (std::size_t k = 0; k < violation_kinds; ++k) {
+    if (report.counts[k] > 0) {
+      list += fmt::format("{}{} {}", list.empty() ? "" : ", ", report.counts[k],
+                          name_of(static_cast<ViolationKind>(k)));
+    }
+  }
+  return fmt::format("{}: not a valid cage of this model: {} ('cagewright check' says where)",
+                     files.cage, list);
+}
+
 std::vector<FileNote> hints(const ValidityReport& report, const PolygonMesh& cage,
                             TriangleView model, const JudgedFiles& files) {
   std::vector<FileNote> notes;

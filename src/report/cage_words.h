@@ -31,6 +31,9 @@ std::string remedy(ViolationKind kind, const JudgedFiles& files);
 /// Which of the files a kind's elements are counted in.
 const std::string& file_of(ViolationKind kind, const JudgedFiles& files);
 
+/// "cage.obj: not a valid cage of this model: 4 open_edge ..."
+std::string not_valid_in_words(const ValidityReport& report, const JudgedFiles& files);
+
 /// What a user should know beside the verdict: vertices merged or left out, and a cage that is in
 /// another unit, turned, or beside the model, with what would make it fit.
 std::vector<FileNote> hints(const ValidityReport& report, const PolygonMesh& cage,

@@ -41,10 +41,10 @@ nlohmann::json json_of(const ValidityReport& report, const JudgedFiles& files) {
   return json;
 }
 
-void name_model_faces(ValidityReport& report, const Triangulation& model) {
+void name_model_faces(ValidityReport& report, std::span<const Index> face_of) {
   for (Violation& violation : report.violations) {
-    if (violation.kind == ViolationKind::face_contact) {
-      violation.elements[0] = model.face_of[violation.elements[0]];
+    if (violation.kind == ViolationKind::face_contact && !face_of.empty()) {
+      violation.elements[0] = face_of[violation.elements[0]];
     }
   }
 }

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "report/cage_words.h"
-#include <cagewright/mesh/triangulate.h>
+#include <cagewright/mesh/triangle_mesh.h>
 #include <cagewright/validate/validate_cage.h>
 
 #include <nlohmann/json.hpp>
+
+#include <span>
 
 namespace cagewright {
 
@@ -15,6 +17,7 @@ namespace cagewright {
 nlohmann::json json_of(const ValidityReport& report, const JudgedFiles& files);
 
 /// Triangles of the model were judged; the user knows its faces.
-void name_model_faces(ValidityReport& report, const Triangulation& model);
+/// \param face_of  for each triangle the face it was cut from; none: they are the faces
+void name_model_faces(ValidityReport& report, std::span<const Index> face_of);
 
 } // namespace cagewright

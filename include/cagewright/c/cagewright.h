@@ -154,13 +154,13 @@ CW_API size_t cw_mesh_vertex_count(const cw_mesh* mesh);
 CW_API size_t cw_mesh_face_count(const cw_mesh* mesh);
 CW_API size_t cw_mesh_corner_count(const cw_mesh* mesh);
 CW_API size_t cw_mesh_triangle_count(const cw_mesh* mesh);
-CW_API const double* cw_mesh_positions(const cw_mesh* mesh);   ///< V x 3
-CW_API const uint32_t* cw_mesh_corners(const cw_mesh* mesh);   ///< C, face after face
-CW_API const uint64_t* cw_mesh_offsets(const cw_mesh* mesh);   ///< F + 1, into the corners
-CW_API const uint32_t* cw_mesh_triangles(const cw_mesh* mesh); ///< T x 3: the faces, cut
+CW_API const double* cw_mesh_positions(const cw_mesh* mesh);          ///< V x 3
+CW_API const uint32_t* cw_mesh_corners(const cw_mesh* mesh);          ///< C, face after face
+CW_API const uint64_t* cw_mesh_offsets(const cw_mesh* mesh);          ///< F + 1, into the corners
+CW_API const uint32_t* cw_mesh_triangles(const cw_mesh* mesh);        ///< T x 3: the faces, cut
 CW_API const uint32_t* cw_mesh_face_of_triangle(const cw_mesh* mesh); ///< T
-CW_API const float* cw_mesh_colors(const cw_mesh* mesh); ///< V x 4 in [0, 1], or NULL
-CW_API size_t cw_mesh_group_count(const cw_mesh* mesh);  ///< objects and groups of the file
+CW_API const float* cw_mesh_colors(const cw_mesh* mesh);              ///< V x 4 in [0, 1], or NULL
+CW_API size_t cw_mesh_group_count(const cw_mesh* mesh); ///< objects and groups of the file
 CW_API const char* cw_mesh_group_name(const cw_mesh* mesh, size_t group);
 CW_API const uint32_t* cw_mesh_face_groups(const cw_mesh* mesh); ///< F, or NULL
 /// What was read otherwise than it stands in the file: a JSON array of {"code", "message"}.
@@ -256,17 +256,15 @@ CW_API cw_code cw_info(const cw_mesh_view* model, int resolution, const cw_contr
 
 /* ---- Deformation ----------------------------------------------------------------------------- */
 
-/// What a cage is inside a quad: four triangles round its center, or two along a diagonal.
-typedef enum cw_quads { CW_QUADS_CENTER = 0, CW_QUADS_DIAGONAL = 1 } cw_quads;
-
 /// How much each of P points follows each of C cage vertices: P x C numbers, rows that sum to 1.
 ///
-/// \param kind     "mean_value"
-/// \param points   P x 3
-/// \param weights  P rows of C doubles to be written
-/// \param row      doubles from one row to the next; 0: C
-CW_API cw_code cw_coordinates(const char* kind, const cw_array* points, const cw_mesh_view* cage,
-                              cw_quads quads, const cw_control* control, double* weights,
+/// \param kind      of coordinates: "mean_value"
+/// \param settings  of that kind, "quads=diagonal"; NULL: as they are by themselves
+/// \param points    P x 3
+/// \param weights   P rows of C doubles to be written
+/// \param row       doubles from one row to the next; 0: C
+CW_API cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* points,
+                              const cw_mesh_view* cage, const cw_control* control, double* weights,
                               size_t row, cw_error** error);
 
 /// A model bound to a cage, for moving it again and again.
@@ -280,9 +278,9 @@ typedef enum cw_storage {
 
 typedef struct cw_deformer_options {
   size_t size;             ///< sizeof(cw_deformer_options)
-  const char* coordinates; ///< NULL: "mean_value"
+  const char* coordinates; ///< the kind; NULL: "mean_value"
+  const char* settings;    ///< of that kind; NULL: as they are by themselves
   cw_storage storage;
-  cw_quads quads;
   int no_normals; ///< do not keep normals up to date
   int allow_open; ///< accept a cage with open edges, with weights that do not reproduce the points
 } cw_deformer_options;
@@ -308,7 +306,8 @@ CW_API const double* cw_deformer_positions(const cw_deformer* deformer);
 /// P x 3 unit normals, likewise; NULL without normals.
 CW_API const double* cw_deformer_normals(const cw_deformer* deformer);
 CW_API const double* cw_deformer_cage_positions(const cw_deformer* deformer); ///< C x 3
-CW_API size_t cw_deformer_unbound_count(const cw_deformer* deformer); ///< vertices that stay at rest
+CW_API size_t
+cw_deformer_unbound_count(const cw_deformer* deformer); ///< vertices that stay at rest
 CW_API size_t cw_deformer_weight_bytes(const cw_deformer* deformer);
 
 /// Reads a model, its cage, and the cage with its vertices moved, and writes the moved model: the

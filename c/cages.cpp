@@ -1,0 +1,281 @@
+#include "arrays.h"
+#include "calls.h"
+#include "handles.h"
+
+#include "report/cage_figures.h"
+#include "report/cage_report.h"
+#include "report/compared_cage.h"
+#include "report/json.h"
+#include "report/model_info.h"
+#include "report/verdict.h"
+#include <cagewright/cage/density.h>
+#include <cagewright/cage/generate.h>
+#include <cagewright/cage/option_table.h>
+#include <cagewright/mesh/weld.h>
+#include <cagewright/validate/cage_metrics.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace cagewright;
+using namespace cagewright::c;
+
+struct cw_options {
+  GenerateOptions options;
+  std::vector<double> density;
+};
+
+struct cw_cage {
+  cw_mesh mesh;
+  std::string report;
+  bool is_as_asked = false;
+};
+
+struct cw_verdict {
+  bool is_valid = false;
+  std::string report;
+};
+
+namespace {
+
+/// What the two meshes are called where a report names their files.
+JudgedFiles names() {
+  return {"model", "cage"};
+}
+
+Status describe_options(char** out) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const CageOption& option : cage_options()) {
+    list.push_back({{"name", option.name},
+                    {"label", option.label},
+                    {"help", option.help},
+                    {"group", title_of(option.group)},
+                    {"values", values_of(option)},
+                    {"default", text_of(option, GenerateOptions())}});
+  }
+  *out = handed_out(text_of(list, -1));
+  return success();
+}
+
+Status make_cage(const cw_mesh_view* model, const cw_options* asked, const Progress& progress,
+                 cw_cage** out) {
+  const Result<MeshArgument> mesh = MeshArgument::of(model, "the model");
+  if (!mesh) {
+    return mesh.error();
+  }
+  GenerateOptions options = asked != nullptr ? asked->options : GenerateOptions();
+  if (asked != nullptr && !asked->density.empty()) {
+    const std::size_t vertices = mesh->triangles().positions.size();
+    if (asked->density.size() != vertices) {
+      return Error{ErrorCode::mismatch, "the density has " + std::to_string(asked->density.size()) +
+                                            " weights, but the model " + std::to_string(vertices) +
+                                            " vertices; give one for each"};
+    }
+    options.density = asked->density;
+  }
+  Result<GeneratedCage> made = generate(mesh->triangles(), options, progress);
+  if (!made) {
+    return made.error();
+  }
+  std::string report = text_of(to_json(*made, options), 1);
+  const bool is_as_asked = made->is_as_asked();
+  *out = new cw_cage{cw_mesh(std::move(made->faces)), std::move(report), is_as_asked};
+  return success();
+}
+
+Status judge(const MeshArgument& model, const PolygonMesh& cage, const ValidateOptions& options,
+             const Progress& progress, cw_verdict** out) {
+  const TriangleView triangles = model.triangles();
+  Result<ValidityReport> report = validate_cage(cage, triangles, options, progress);
+  if (!report) {
+    return report.error();
+  }
+  name_model_faces(*report, model.face_of());
+  nlohmann::json json = json_of(*report, names());
+  json["cage"] =
+      figures_as_json(measure_cage(report->merged_vertices > 0 ? weld(cage) : cage, triangles));
+  json["notes"] = nlohmann::json::array();
+  for (const FileNote& note : hints(*report, cage, triangles, names())) {
+    json["notes"].push_back({{"code", note.code}, {"message", note.message}});
+  }
+  *out = new cw_verdict{report->valid(), text_of(json, 1)};
+  return success();
+}
+
+Status compare(const MeshArgument& model, const cw_mesh_view* cages, const char* const* cage_names,
+               std::size_t count, bool with_poses, const Progress& progress, char** out) {
+  const ModelVolume volume = model_volume(model.triangles());
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string name =
+        cage_names != nullptr ? cage_names[i] : "cage " + std::to_string(i + 1);
+    const Result<MeshArgument> cage = MeshArgument::of(&cages[i], name);
+    if (!cage) {
+      return cage.error();
+    }
+    const Progress share = progress.part(static_cast<double>(i) / static_cast<double>(count),
+                                         static_cast<double>(i + 1) / static_cast<double>(count));
+    const Result<ComparedCage> compared =
+        compare_cage(name, cage->polygons(), model.triangles(), volume, with_poses, share);
+    if (!compared) {
+      return compared.error();
+    }
+    list.push_back(json_of(*compared));
+  }
+  *out = handed_out(text_of(list, 1));
+  return success();
+}
+
+} // namespace
+
+cw_options* cw_options_new(void) {
+  try {
+    return new cw_options;
+  } catch (...) {
+    return nullptr;
+  }
+}
+
+void cw_options_free(cw_options* options) {
+  delete options;
+}
+
+cw_code cw_options_set(cw_options* options, const char* name, const char* value, cw_error** error) {
+  return call(error, [&]() -> Status {
+    const CageOption* const option = find_cage_option(name);
+    if (option == nullptr) {
+      std::string known;
+      for (const CageOption& other : cage_options()) {
+        known += (known.empty() ? "" : ", ") + std::string(other.name);
+      }
+      return Error{ErrorCode::invalid_option,
+                   std::string(name) + " is no option of cages; there are " + known};
+    }
+    const Status set = set_from_text(*option, value, options->options);
+    return set ? set : Error{set.error().code, std::string(name) + ": " + set.error().message};
+  });
+}
+
+cw_code cw_options_set_density(cw_options* options, const cw_array* weights, cw_error** error) {
+  return call(error, [&]() -> Status {
+    Result<std::vector<double>> numbers = numbers_of(*weights, "the density");
+    if (!numbers) {
+      return numbers.error();
+    }
+    for (std::size_t v = 0; v < numbers->size(); ++v) {
+      if (!(std::isfinite((*numbers)[v]) && (*numbers)[v] >= 0)) {
+        return Error{ErrorCode::malformed,
+                     "the density: the weight of vertex " + std::to_string(v) +
+                         " is negative or not finite; give numbers from 0 on"};
+      }
+    }
+    Result<std::vector<double>> density = density_of_weights(std::move(*numbers));
+    if (!density) {
+      return density.error();
+    }
+    options->density = std::move(*density);
+    return success();
+  });
+}
+
+cw_code cw_options_describe(char** out, cw_error** error) {
+  *out = nullptr;
+  return call(error, [&] { return describe_options(out); });
+}
+
+void cw_cage_free(cw_cage* cage) {
+  delete cage;
+}
+
+const cw_mesh* cw_cage_mesh(const cw_cage* cage) {
+  return &cage->mesh;
+}
+
+const char* cw_cage_report(const cw_cage* cage) {
+  return cage->report.c_str();
+}
+
+int cw_cage_is_as_asked(const cw_cage* cage) {
+  return cage->is_as_asked ? 1 : 0;
+}
+
+cw_code cw_generate(const cw_mesh_view* model, const cw_options* options, const cw_control* control,
+                    cw_cage** out, cw_error** error) {
+  *out = nullptr;
+  return call(error, control,
+              [&](const Progress& progress) { return make_cage(model, options, progress, out); });
+}
+
+void cw_verdict_free(cw_verdict* verdict) {
+  delete verdict;
+}
+
+int cw_verdict_is_valid(const cw_verdict* verdict) {
+  return verdict->is_valid ? 1 : 0;
+}
+
+const char* cw_verdict_report(const cw_verdict* verdict) {
+  return verdict->report.c_str();
+}
+
+cw_code cw_check(const cw_mesh_view* model, const cw_mesh_view* cage, int flags, size_t max_listed,
+                 const cw_control* control, cw_verdict** out, cw_error** error) {
+  *out = nullptr;
+  return call(error, control, [&](const Progress& progress) -> Status {
+    const Result<MeshArgument> first = MeshArgument::of(model, "the model");
+    if (!first) {
+      return first.error();
+    }
+    const Result<MeshArgument> second = MeshArgument::of(cage, "the cage");
+    if (!second) {
+      return second.error();
+    }
+    const ValidateOptions options{.allow_pieces = (flags & CW_CHECK_PIECES) != 0,
+                                  .allow_inner_shells = (flags & CW_CHECK_INNER_SHELLS) != 0,
+                                  .weld = true,
+                                  .max_listed = max_listed};
+    return judge(*first, second->polygons(), options, progress, out);
+  });
+}
+
+cw_code cw_compare(const cw_mesh_view* model, const cw_mesh_view* cages, const char* const* names,
+                   size_t count, int poses, const cw_control* control, char** out,
+                   cw_error** error) {
+  *out = nullptr;
+  return call(error, control, [&](const Progress& progress) -> Status {
+    const Result<MeshArgument> mesh = MeshArgument::of(model, "the model");
+    return mesh ? compare(*mesh, cages, names, count, poses != 0, progress, out)
+                : Status(mesh.error());
+  });
+}
+
+cw_code cw_info(const cw_mesh_view* model, int resolution, const cw_control* control, char** out,
+                cw_error** error) {
+  *out = nullptr;
+  return call(error, control, [&](const Progress& progress) -> Status {
+    const Result<MeshArgument> mesh = MeshArgument::of(model, "the model");
+    if (!mesh) {
+      return mesh.error();
+    }
+    VoxelizeOptions voxels;
+    constexpr int least = 2;
+    constexpr int most = 4096;
+    if (resolution != 0) {
+      voxels.resolution = resolution;
+    }
+    if (voxels.resolution < least || voxels.resolution > most) {
+      return Error{ErrorCode::invalid_option,
+                   "resolution: " + std::to_string(resolution) + " is not from 2 to 4096"};
+    }
+    const Result<ModelInfo> info = describe_model(mesh->polygons(), voxels, progress);
+    if (!info) {
+      return info.error();
+    }
+    *out = handed_out(text_of(json_of(*info), 1));
+    return success();
+  });
+}

@@ -1,0 +1,239 @@
+#include "arrays.h"
+#include "calls.h"
+#include "deform_file.h"
+#include "handles.h"
+
+#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/deform/deformer.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+
+using namespace cagewright;
+using namespace cagewright::c;
+
+struct cw_deformer {
+  Deformer deformer;
+};
+
+namespace {
+
+/// A kind of coordinates by name, and its settings: "quads=diagonal".
+Result<MeanValueOptions> coordinates_named(const char* kind, const char* settings) {
+  if (kind != nullptr && std::string_view(kind) != "mean_value") {
+    return Error{ErrorCode::invalid_option,
+                 std::string(kind) + " is no kind of coordinates; there are mean_value"};
+  }
+  MeanValueOptions options;
+  const std::string_view text = settings != nullptr ? settings : "";
+  if (text == "quads=diagonal") {
+    options.quads = QuadTreatment::diagonal;
+  } else if (!text.empty() && text != "quads=center") {
+    return Error{ErrorCode::invalid_option,
+                 std::string(text) + " is no setting of mean_value; there are quads=center and "
+                                     "quads=diagonal"};
+  }
+  return options;
+}
+
+/// Rows of the caller's from tiles of ours.
+void store(const Weights& weights, double* rows, std::size_t row) {
+  for (std::size_t p = 0; p < weights.points(); ++p) {
+    for (std::size_t c = 0; c < weights.cage_vertices(); ++c) {
+      rows[p * row + c] = weights.at(p, c);
+    }
+  }
+}
+
+Status solve(const MeanValueSolver& solver, std::span<const Vec3> points, double* weights,
+             std::size_t row, const Progress& progress) {
+  // Some at a time: the matrix stands in memory once, in the caller's.
+  constexpr std::size_t some = 16 * Weights::tile_points;
+  const auto count = static_cast<double>(points.size());
+  for (std::size_t first = 0; first < points.size(); first += some) {
+    const std::size_t now = std::min(some, points.size() - first);
+    const auto solved = solve_all<double>(solver, points.subspan(first, now),
+                                          progress.part(static_cast<double>(first) / count,
+                                                        static_cast<double>(first + now) / count));
+    if (!solved) {
+      return solved.error();
+    }
+    store(solved->weights, weights + first * row, row);
+  }
+  return success();
+}
+
+Result<WeightStorage> storage_of(cw_storage storage) {
+  switch (storage) {
+  case CW_STORAGE_SINGLE:
+    return WeightStorage::single;
+  case CW_STORAGE_FULL:
+    return WeightStorage::full;
+  case CW_STORAGE_COMPACT:
+    return WeightStorage::compact;
+  }
+  return Error{ErrorCode::invalid_option, "there is no such storage of weights"};
+}
+
+Status bind(const MeshArgument& model, const MeshArgument& cage, const cw_deformer_options& given,
+            const Progress& progress, cw_deformer** out) {
+  Result<MeanValueOptions> coordinates = coordinates_named(given.coordinates, given.settings);
+  if (!coordinates) {
+    return coordinates.error();
+  }
+  coordinates->allow_open = given.allow_open != 0;
+  const Result<WeightStorage> storage = storage_of(given.storage);
+  if (!storage) {
+    return storage.error();
+  }
+  const DeformerOptions options{
+      .coordinates = *coordinates, .storage = *storage, .normals = given.no_normals == 0};
+  Result<Deformer> bound = Deformer::bind(model.polygons(), cage.polygons(), options, {}, progress);
+  if (!bound) {
+    return bound.error();
+  }
+  *out = new cw_deformer{std::move(*bound)};
+  return success();
+}
+
+Error other_count(const std::string& what, std::size_t count, std::size_t wanted) {
+  return {ErrorCode::mismatch,
+          what + " are " + std::to_string(count) + ", not " + std::to_string(wanted)};
+}
+
+} // namespace
+
+cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* points,
+                       const cw_mesh_view* cage, const cw_control* control, double* weights,
+                       size_t row, cw_error** error) {
+  return call(error, control, [&](const Progress& progress) -> Status {
+    const Result<MeanValueOptions> options = coordinates_named(kind, settings);
+    if (!options) {
+      return options.error();
+    }
+    const Result<Points> given = Points::of(*points, "the points");
+    if (!given) {
+      return given.error();
+    }
+    const Result<MeshArgument> mesh = MeshArgument::of(cage, "the cage");
+    if (!mesh) {
+      return mesh.error();
+    }
+    const Result<MeanValueSolver> solver = MeanValueSolver::create(mesh->polygons(), *options);
+    if (!solver) {
+      return solver.error();
+    }
+    return solve(*solver, given->view(), weights, row != 0 ? row : solver->cage_vertices(),
+                 progress);
+  });
+}
+
+cw_code cw_deformer_bind(const cw_mesh_view* model, const cw_mesh_view* cage,
+                         const cw_deformer_options* options, const cw_control* control,
+                         cw_deformer** out, cw_error** error) {
+  *out = nullptr;
+  return call(error, control, [&](const Progress& progress) -> Status {
+    const Result<MeshArgument> first = MeshArgument::of(model, "the model");
+    if (!first) {
+      return first.error();
+    }
+    const Result<MeshArgument> second = MeshArgument::of(cage, "the cage");
+    if (!second) {
+      return second.error();
+    }
+    return bind(*first, *second, known_part(options), progress, out);
+  });
+}
+
+void cw_deformer_free(cw_deformer* deformer) {
+  delete deformer;
+}
+
+cw_code cw_deformer_set_cage(cw_deformer* deformer, const cw_array* positions,
+                             const cw_control* control, cw_error** error) {
+  return call(error, control, [&](const Progress&) -> Status {
+    const Result<Points> given = Points::of(*positions, "the cage's positions");
+    if (!given) {
+      return given.error();
+    }
+    Deformer& d = deformer->deformer;
+    if (given->view().size() != d.cage_positions().size()) {
+      return other_count("the cage's positions", given->view().size(), d.cage_positions().size());
+    }
+    d.set_cage(given->view());
+    d.update();
+    return success();
+  });
+}
+
+cw_code cw_deformer_move(cw_deformer* deformer, const cw_array* vertices, const cw_array* positions,
+                         const cw_control* control, cw_error** error) {
+  return call(error, control, [&](const Progress&) -> Status {
+    Deformer& d = deformer->deformer;
+    const Result<std::vector<Index>> which =
+        indices_of(*vertices, d.cage_positions().size(), "the move");
+    if (!which) {
+      return which.error();
+    }
+    const Result<Points> to = Points::of(*positions, "the positions");
+    if (!to) {
+      return to.error();
+    }
+    if (to->view().size() != which->size()) {
+      return other_count("the positions", to->view().size(), which->size());
+    }
+    for (std::size_t i = 0; i < which->size(); ++i) {
+      d.move_cage_vertex((*which)[i], to->view()[i]);
+    }
+    d.update();
+    return success();
+  });
+}
+
+size_t cw_deformer_vertex_count(const cw_deformer* deformer) {
+  return deformer->deformer.positions().size();
+}
+
+size_t cw_deformer_cage_vertex_count(const cw_deformer* deformer) {
+  return deformer->deformer.cage_positions().size();
+}
+
+const double* cw_deformer_positions(const cw_deformer* deformer) {
+  return reinterpret_cast<const double*>(deformer->deformer.positions().data());
+}
+
+const double* cw_deformer_normals(const cw_deformer* deformer) {
+  const std::span<const Vec3> normals = deformer->deformer.normals();
+  return normals.empty() ? nullptr : reinterpret_cast<const double*>(normals.data());
+}
+
+const double* cw_deformer_cage_positions(const cw_deformer* deformer) {
+  return reinterpret_cast<const double*>(deformer->deformer.cage_positions().data());
+}
+
+size_t cw_deformer_unbound_count(const cw_deformer* deformer) {
+  return deformer->deformer.unbound();
+}
+
+size_t cw_deformer_weight_bytes(const cw_deformer* deformer) {
+  return deformer->deformer.weight_bytes();
+}
+
+cw_code cw_deform_file(const char* model, const char* cage, const char* posed, const char* out,
+                       const cw_control* control, char** notes, cw_error** error) {
+  if (notes != nullptr) {
+    *notes = nullptr;
+  }
+  return call(error, control, [&](const Progress& progress) -> Status {
+    const Result<std::vector<FileNote>> noted = deform_file({model, cage, posed, out}, progress);
+    if (!noted) {
+      return noted.error();
+    }
+    if (notes != nullptr) {
+      *notes = handed_out(notes_as_json(*noted));
+    }
+    return success();
+  });
+}
