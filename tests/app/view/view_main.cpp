@@ -1,5 +1,6 @@
 // Tests in a window.
 #include "keep_libraries.h"
+#include "mouse.h"
 
 #include <QApplication>
 #include <QDir>
@@ -12,5 +13,6 @@ int main(int argc, char** argv) {
   QStandardPaths::setTestModeEnabled(true);
   QApplication application(argc, argv);
   QDir().mkpath(CAGEWRIGHT_SCREENSHOTS);
+  cagewright::app::test::park_cursor();
   return RUN_ALL_TESTS();
 }

@@ -1,5 +1,6 @@
 // Tests of the whole window.
 #include "keep_libraries.h"
+#include "mouse.h"
 
 #include <QApplication>
 #include <QDir>
@@ -32,5 +33,6 @@ int main(int argc, char** argv) {
   QSettings::setDefaultFormat(QSettings::IniFormat);
   QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, settings.path());
   QDir().mkpath(CAGEWRIGHT_SCREENSHOTS);
+  cagewright::app::test::park_cursor();
   return RUN_ALL_TESTS();
 }
