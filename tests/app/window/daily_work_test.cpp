@@ -4,8 +4,8 @@
 #include "app/panels/time_line_panel.h"
 
 #include <QCoreApplication>
-#include <QEnterEvent>
 #include <QDoubleSpinBox>
+#include <QEnterEvent>
 #include <QListWidget>
 #include <QMessageBox>
 #include <QToolButton>
