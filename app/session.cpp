@@ -36,6 +36,13 @@ bool binds_well(const ValidityReport& report) {
   return true;
 }
 
+QString with_notes(QString text, const std::vector<FileNote>& notes) {
+  for (const FileNote& note : notes) {
+    text += QStringLiteral("; ") + QString::fromStdString(note.message);
+  }
+  return text;
+}
+
 SharedPositions shared(std::span<const Vec3> positions) {
   return std::make_shared<const std::vector<Vec3>>(positions.begin(), positions.end());
 }
@@ -154,10 +161,11 @@ void Session::open(const fs::path& path, const fs::path& cage) {
       Q_EMIT titleChanged();
       Q_EMIT cameraRestored({});
       Q_EMIT opened(QString::fromStdString(path.string()));
-      Q_EMIT message(tr("%1: %L2 vertices, %L3 triangles")
-                         .arg(name_of(path))
-                         .arg(model->mesh.positions.size())
-                         .arg(model->triangles.size()));
+      Q_EMIT message(with_notes(tr("%1: %L2 vertices, %L3 triangles")
+                                    .arg(name_of(path))
+                                    .arg(model->mesh.positions.size())
+                                    .arg(model->triangles.size()),
+                                model->notes));
     });
   });
 }
@@ -468,15 +476,18 @@ void Session::start_export(const QString& title, std::vector<fs::path> paths,
       title,
       [this, outputs, model = document_.model(),
        rest = document_.state().rest](const Progress& progress) -> Result<Job::Apply> {
-        if (Status s = export_models(*model, *rest, outputs, progress); !s) {
-          return s.error();
+        Result<std::vector<FileNote>> notes = export_models(*model, *rest, outputs, progress);
+        if (!notes) {
+          return notes.error();
         }
-        return Job::Apply([this, outputs] {
-          Q_EMIT message(outputs.size() == 1 ? tr("Wrote %1").arg(name_of(outputs.front().path))
-                                             : tr("Wrote %L1 files, %2 to %3")
-                                                   .arg(outputs.size())
-                                                   .arg(name_of(outputs.front().path),
-                                                        name_of(outputs.back().path)));
+        return Job::Apply([this, outputs, notes = *std::move(notes)] {
+          const QString what =
+              outputs.size() == 1
+                  ? tr("Wrote %1").arg(name_of(outputs.front().path))
+                  : tr("Wrote %L1 files, %2 to %3")
+                        .arg(outputs.size())
+                        .arg(name_of(outputs.front().path), name_of(outputs.back().path));
+          Q_EMIT message(with_notes(what, notes));
         });
       },
       Kind::writes);

@@ -29,7 +29,8 @@ void tell(std::span<const FileNote> notes) {
     const bool is_new = std::ranges::none_of(
         told(), [&](const FileNote& other) { return other.message == note.message; });
     if (is_new) {
-      std::fprintf(stderr, "cagewright: note: %s\n", note.message.c_str());
+      const char* kind = note.code == "lost" ? "warning" : "note";
+      std::fprintf(stderr, "cagewright: %s: %s\n", kind, note.message.c_str());
       told().push_back(note);
     }
   }

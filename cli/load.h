@@ -14,7 +14,9 @@
 
 namespace cagewright::cli {
 
-/// Says on stderr what was noted while a file was read, a line for each, and keeps it for --json.
+/// Says on stderr what was noted while a file was read or written, a line for each, and keeps it
+/// for
+/// --json. That something was lost is a warning.
 void tell(std::span<const FileNote> notes);
 
 /// All that tell() has said in this run: an array of objects with a code and a message.

@@ -167,7 +167,7 @@ Result<PolygonMesh> load_cage(const std::string& path, const ModelChoice& choice
 
 Result<ModelAndCage> load_model_and_cage(const std::string& model, const std::string& cage,
                                          const ModelChoice& choice) {
-  Result<PolygonMesh> whole = load_mesh(model, choice.pose);
+  Result<ModelFile> whole = load_model(model, choice.pose);
   if (!whole) {
     return whole.error();
   }
@@ -180,21 +180,21 @@ Result<ModelAndCage> load_model_and_cage(const std::string& model, const std::st
   const bool is_beside_cage =
       !choice.cage_objects.empty() && std::filesystem::equivalent(model, cage, ignored);
   if (choice.only.empty() && !is_beside_cage) {
-    meshes.bound.mesh = meshes.model;
-    meshes.bound.vertices.resize(meshes.model.positions.size());
+    meshes.bound.mesh = meshes.model();
+    meshes.bound.vertices.resize(meshes.model().positions.size());
     std::iota(meshes.bound.vertices.begin(), meshes.bound.vertices.end(), Index(0));
     return meshes;
   }
   Result<std::vector<bool>> faces =
-      choice.only.empty() ? faces_named(meshes.model, choice.cage_objects, "--cage-object")
-                          : faces_named(meshes.model, choice.only, "--only");
+      choice.only.empty() ? faces_named(meshes.model(), choice.cage_objects, "--cage-object")
+                          : faces_named(meshes.model(), choice.only, "--only");
   if (!faces) {
     return in_file(model, faces.error());
   }
   if (choice.only.empty()) {
     faces->flip();
   }
-  meshes.bound = part_of(meshes.model, *faces);
+  meshes.bound = part_of(meshes.model(), *faces);
   if (meshes.bound.mesh.face_count() == 0) {
     return Error{ErrorCode::invalid_option,
                  model + ": --cage-object: all objects of the file are the cage; nothing is left "

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cagewright/core/result.h>
+#include <cagewright/io/model_file.h>
 #include <cagewright/io/pose.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
@@ -53,10 +54,12 @@ Result<PolygonMesh> load_cage(const std::string& path, const ModelChoice& choice
 
 /// A model and its cage, which may be objects of one file.
 struct ModelAndCage {
-  PolygonMesh model; ///< all of the file
-  MeshPart bound;    ///< what the cage is for: the chosen objects; where there are none and the
-                     ///< cage is an object of the same file, the others; else all
+  ModelFile file;
+  MeshPart bound; ///< what the cage is for: the chosen objects; where there are none and the
+                  ///< cage is an object of the same file, the others; else all
   PolygonMesh cage;
+
+  [[nodiscard]] const PolygonMesh& model() const { return file.mesh(); } ///< all of the file
 };
 Result<ModelAndCage> load_model_and_cage(const std::string& model, const std::string& cage,
                                          const ModelChoice& choice);

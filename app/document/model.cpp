@@ -3,7 +3,6 @@
 #include "app/document/coarse_triangles.h"
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/weights_file.h>
-#include <cagewright/io/read_mesh.h>
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
 
@@ -21,22 +20,29 @@ constexpr std::size_t large = 150000;
 Result<std::shared_ptr<const Model>> open_model(const std::filesystem::path& path,
                                                 const Progress& progress) {
   progress(0, "reading");
-  Result<PolygonMesh> mesh = read_mesh(path);
-  if (!mesh) {
-    return mesh.error();
+  Result<ModelFile> file = ModelFile::open(path);
+  if (!file) {
+    return file.error();
   }
-  return prepare_model(std::move(*mesh), path, progress.part(0.5, 1));
+  Result<FileNormals> normals = file->normals();
+  if (!normals) {
+    return normals.error();
+  }
+  ModelOrigin origin{path, *std::move(normals), {file->notes().begin(), file->notes().end()}};
+  return prepare_model(std::move(*file).take_mesh(), std::move(origin), progress.part(0.5, 1));
 }
 
-Result<std::shared_ptr<const Model>>
-prepare_model(PolygonMesh mesh, const std::filesystem::path& path, const Progress& progress) {
+Result<std::shared_ptr<const Model>> prepare_model(PolygonMesh mesh, ModelOrigin origin,
+                                                   const Progress& progress) {
   auto model = std::make_shared<Model>();
   model->mesh = std::move(mesh);
-  model->path = path;
+  model->path = std::move(origin.path);
+  model->file_normals = std::move(origin.normals);
+  model->notes = std::move(origin.notes);
   model->box = bounding_box(model->mesh.positions);
   model->diagonal = diagonal(model->mesh.positions);
   if (!(model->diagonal > 0)) {
-    return Error{ErrorCode::unfit_model, path.string() + ": the model has no extent"};
+    return Error{ErrorCode::unfit_model, model->path.string() + ": the model has no extent"};
   }
   progress(0, "cutting faces into triangles");
   model->triangles = triangulate(model->mesh).triangles;
@@ -52,13 +58,6 @@ prepare_model(PolygonMesh mesh, const std::filesystem::path& path, const Progres
   progress(0.5, "hierarchy of boxes");
   model->bvh = TriangleBvh(model->view());
   model->checksum = checksum(model->mesh.positions);
-  if (!path.empty()) {
-    Result<FileNormals> stored = read_normals(path);
-    if (!stored) {
-      return stored.error();
-    }
-    model->file_normals = std::move(*stored);
-  }
   if (progress.cancelled()) {
     return Error::cancelled();
   }

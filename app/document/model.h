@@ -5,7 +5,7 @@
 #include "spatial/bvh.h"
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
-#include <cagewright/io/rewrite_positions.h>
+#include <cagewright/io/model_file.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
 #include <cstdint>
@@ -15,6 +15,13 @@
 
 namespace cagewright::app {
 
+/// What is known of a model's file. A mesh in memory has none.
+struct ModelOrigin {
+  std::filesystem::path path;
+  FileNormals normals;         ///< as stored in the file, if any
+  std::vector<FileNote> notes; ///< what its reader has taken otherwise than it stands there
+};
+
 struct Model {
   PolygonMesh mesh;
   std::vector<Triangle> triangles; ///< T: the faces, cut
@@ -22,11 +29,12 @@ struct Model {
                                    ///< moves: see coarse_triangles(); none for small models
   std::vector<Vec3> normals;       ///< V smooth unit normals
   TriangleBvh bvh;                 ///< over the triangles
-  FileNormals file_normals;        ///< as stored in the file, if any
   Box3 box;                        ///< of all vertices
   double diagonal = 1;             ///< of that box; the unit of all tolerances
-  std::filesystem::path path;
-  std::uint64_t checksum = 0; ///< of the positions
+  std::filesystem::path path;      ///< of the file; empty for a mesh in memory
+  FileNormals file_normals;        ///< as stored in the file, if any
+  std::vector<FileNote> notes;     ///< what its reader has taken otherwise than it stands there
+  std::uint64_t checksum = 0;      ///< of the positions
 
   [[nodiscard]] TriangleView view() const { return {mesh.positions, triangles}; }
 };
@@ -36,8 +44,8 @@ struct Model {
 Result<std::shared_ptr<const Model>> open_model(const std::filesystem::path& path,
                                                 const Progress& progress = {});
 
-/// The same of a mesh in memory; `path` may be empty.
-Result<std::shared_ptr<const Model>>
-prepare_model(PolygonMesh mesh, const std::filesystem::path& path, const Progress& progress = {});
+/// The same of a mesh in memory.
+Result<std::shared_ptr<const Model>> prepare_model(PolygonMesh mesh, ModelOrigin origin,
+                                                   const Progress& progress = {});
 
 } // namespace cagewright::app

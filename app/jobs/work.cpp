@@ -7,9 +7,9 @@
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
+#include <cagewright/io/model_file.h>
 #include <cagewright/io/read_mesh.h>
 #include <cagewright/io/read_vertex_weights.h>
-#include <cagewright/io/rewrite_positions.h>
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/mesh/weld.h>
@@ -160,8 +160,22 @@ Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
   return judged;
 }
 
-Status export_models(const Model& model, const PolygonMesh& cage_at_rest,
-                     const std::vector<ModelOutput>& outputs, const Progress& progress) {
+namespace {
+
+/// A model in memory has no file whose attributes could be kept.
+Result<std::vector<FileNote>> write_shape(const Model& model, std::span<const Vec3> positions,
+                                          const std::filesystem::path& out) {
+  PolygonMesh moved = model.mesh;
+  moved.positions.assign(positions.begin(), positions.end());
+  const Status written = write_mesh(moved, out);
+  return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
+}
+
+} // namespace
+
+Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
+                                            const std::vector<ModelOutput>& outputs,
+                                            const Progress& progress) {
   const Result<MeanValueSolver> solver = MeanValueSolver::create(cage_at_rest);
   if (!solver) {
     return solver.error();
@@ -175,23 +189,36 @@ Status export_models(const Model& model, const PolygonMesh& cage_at_rest,
   if (!moved) {
     return moved.error();
   }
+  std::optional<ModelFile> file;
+  if (!model.path.empty()) {
+    Result<ModelFile> opened = ModelFile::open(model.path);
+    if (!opened) {
+      return opened.error();
+    }
+    file = *std::move(opened);
+  }
   NormalField normals;
   if (const FileNormals& stored = model.file_normals; !stored.normals.empty()) {
     normals = NormalField(model.mesh, {stored.of_corner, stored.normals.size(), stored.normals});
   }
+  std::vector<FileNote> notes;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (progress.cancelled()) {
       return Error::cancelled();
     }
     progress(0.8 + 0.2 * static_cast<double>(i) / static_cast<double>(outputs.size()), "writing");
     normals.update(moved->positions[i]);
-    if (Status s = write_moved(model.path, model.mesh, moved->positions[i], normals.normals(),
-                               outputs[i].path);
-        !s) {
-      return s;
+    Result<std::vector<FileNote>> written =
+        file ? file->write_moved(moved->positions[i], normals.normals(), outputs[i].path)
+             : write_shape(model, moved->positions[i], outputs[i].path);
+    if (!written) {
+      return written.error();
+    }
+    if (i == 0) { // the others lose the same
+      notes = *std::move(written);
     }
   }
-  return success();
+  return notes;
 }
 
 Status export_weights(const Model& model, const PolygonMesh& cage,

@@ -58,10 +58,14 @@ struct ModelOutput {
 };
 
 /// Writes the model in each of the poses. A file of the same format as the model's keeps all else
-/// that is in it, with its normals turned along; others get positions and faces.
-/// Errors: cannot_write, unsupported, invalid_cage, cancelled.
-Status export_models(const Model& model, const PolygonMesh& cage_at_rest,
-                     const std::vector<ModelOutput>& outputs, const Progress& progress = {});
+/// that is in it, with its normals turned along; others get what they can hold. The model's file is
+/// read once more, for all poses.
+/// \returns notes about what the first of them cannot hold
+/// Errors: cannot_open (the model's file is gone), mismatch (it is another now), cannot_write,
+/// unsupported, invalid_cage, cancelled.
+Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
+                                            const std::vector<ModelOutput>& outputs,
+                                            const Progress& progress = {});
 
 /// Binds once more and writes the weights as NumPy's .npz. Errors: cannot_write, cancelled.
 Status export_weights(const Model& model, const PolygonMesh& cage,

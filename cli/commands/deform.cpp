@@ -9,8 +9,7 @@
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
-#include <cagewright/io/mesh_format.h>
-#include <cagewright/io/rewrite_positions.h>
+#include <cagewright/io/model_file.h>
 #include <cagewright/mesh/measures.h>
 
 #include <fmt/format.h>
@@ -153,7 +152,7 @@ read_poses(const std::vector<Pose>& poses, const PolygonMesh& rest, const ModelC
 
 /// All positions of the model: the given ones of its bound part, the others at rest.
 std::vector<Vec3> with_part(const ModelAndCage& meshes, std::span<const Vec3> moved) {
-  std::vector<Vec3> positions = meshes.model.positions;
+  std::vector<Vec3> positions = meshes.model().positions;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     positions[meshes.bound.vertices[i]] = moved[i];
   }
@@ -169,8 +168,8 @@ Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
     return stored.error();
   }
   // Made for all of the model, or for the part that is chosen now too.
-  const bool for_all = stored->weights.points() == meshes.model.positions.size();
-  const std::vector<Vec3>& bound = for_all ? meshes.model.positions : meshes.bound.mesh.positions;
+  const bool for_all = stored->weights.points() == meshes.model().positions.size();
+  const std::vector<Vec3>& bound = for_all ? meshes.model().positions : meshes.bound.mesh.positions;
   if (Status status = belongs_to(*stored, bound, meshes.cage); !status) {
     return about_file(options.weights, status.error());
   }
@@ -235,19 +234,19 @@ std::string summary(std::span<const Vec3> rest, std::span<const Vec3> positions,
 }
 
 /// Says which files beside the model the written ones refer to in vain.
-void warn_of_links(const std::string& model, const std::vector<Pose>& poses) {
+void warn_of_links(const ModelFile& model, const std::vector<Pose>& poses) {
   std::set<fs::path> told;
   for (const Pose& pose : poses) {
     const fs::path folder = fs::path(pose.output).parent_path();
-    if (format_of_name(model) != format_of_name(pose.output) || !told.insert(folder).second) {
+    if (!model.keeps_format(pose.output) || !told.insert(folder).second) {
       continue;
     }
-    for (const fs::path& link : linked_files(model)) {
+    for (const fs::path& link : linked_files(model.path())) {
       if (!fs::exists(folder / link)) {
         fmt::print(
             stderr,
             "cagewright: warning: {} refers to {}, which is not beside it; copy it from {}\n",
-            pose.output, link.string(), fs::absolute(model).parent_path().string());
+            pose.output, link.string(), fs::absolute(model.path()).parent_path().string());
       }
     }
   }
@@ -271,15 +270,21 @@ int run(const Options& options, const Session& session) {
   if (!cages) {
     return fail(cages.error());
   }
-  const std::vector<Vec3>& rest = meshes->model.positions;
-  const std::span<const Index> chosen = meshes->bound.vertices;
-  const ModelChoice& choice = options.binding.choice;
-  // Other formats get no normals, so that broken ones do not stand in the way.
-  const bool keeps_normals = std::ranges::any_of(*poses, [&](const Pose& pose) {
-    return format_of_name(options.binding.model) == format_of_name(pose.output);
-  });
-  const Result<FileNormals> stored_normals =
-      keeps_normals ? read_normals(options.binding.model, choice.pose) : FileNormals();
+  const ModelFile& file = meshes->file;
+  for (const Pose& pose : *poses) {
+    const Status writable =
+        file.keeps_format(pose.output) ? success() : can_write_mesh(pose.output);
+    if (!writable) {
+      return fail(writable.error());
+    }
+  }
+  const std::vector<Vec3>& rest = file.mesh().positions;
+  const bool keeps_format =
+      std::ranges::any_of(*poses, [&](const Pose& pose) { return file.keeps_format(pose.output); });
+  Result<FileNormals> stored_normals = file.normals();
+  if (!stored_normals && !keeps_format) {
+    stored_normals = FileNormals(); // broken ones are left out of other formats, and told
+  }
   if (!stored_normals) {
     return fail(stored_normals.error());
   }
@@ -297,20 +302,23 @@ int run(const Options& options, const Session& session) {
   }
   NormalField normals;
   if (!stored_normals->normals.empty()) {
-    normals = NormalField(meshes->model, {stored_normals->of_corner, stored_normals->normals.size(),
-                                          stored_normals->normals});
+    normals = NormalField(file.mesh(), {stored_normals->of_corner, stored_normals->normals.size(),
+                                        stored_normals->normals});
   }
   for (std::size_t i = 0; i < poses->size(); ++i) {
-    keep_others(rest, chosen, (*results)[i]);
+    keep_others(rest, meshes->bound.vertices, (*results)[i]);
     normals.update((*results)[i]);
-    if (Status status = write_moved(options.binding.model, meshes->model, (*results)[i],
-                                    normals.normals(), (*poses)[i].output, choice.pose);
-        !status) {
-      return fail(status.error());
+    const Result<std::vector<FileNote>> notes =
+        file.write_moved((*results)[i], normals.normals(), (*poses)[i].output);
+    if (!notes) {
+      return fail(notes.error());
+    }
+    if (i == 0) { // the others of a sequence lose the same
+      tell(*notes);
     }
     session.say(summary(rest, (*results)[i], (*poses)[i].output));
   }
-  warn_of_links(options.binding.model, *poses);
+  warn_of_links(file, *poses);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   session.say(fmt::format("{:.2f} s in all\n", seconds.count()));
   return done;

@@ -6,6 +6,7 @@
 #include "io/utf16.h"
 #include <cagewright/io/write_mesh.h>
 
+#include <mutex>
 #include <optional>
 
 namespace cagewright {
@@ -16,6 +17,15 @@ std::optional<std::filesystem::path> folder_of(const std::filesystem::path& path
 }
 
 } // namespace
+
+struct ModelFile::Lazy {
+  std::once_flag normals_read;
+  std::optional<Result<FileNormals>> normals;
+  std::once_flag attributes_read;
+  std::optional<Result<MeshAttributes>> attributes;
+};
+
+ModelFile::ModelFile() : lazy_(std::make_shared<Lazy>()) {}
 
 Result<ModelFile> ModelFile::open(const std::filesystem::path& path, Pose pose) {
   Result<FileBytes> bytes = read_file(path);
@@ -78,10 +88,19 @@ Result<ModelFile> ModelFile::read(ModelFile file) {
 }
 
 Result<FileNormals> ModelFile::normals() const {
-  return normals_in({name_, bytes_->view()}, format_, folder_of(path_, on_disk_), pose_);
+  std::call_once(lazy_->normals_read, [&] {
+    lazy_->normals =
+        normals_in({name_, bytes_->view()}, format_, folder_of(path_, on_disk_), pose_);
+  });
+  return *lazy_->normals;
 }
 
 Result<MeshAttributes> ModelFile::attributes() const {
+  std::call_once(lazy_->attributes_read, [&] { lazy_->attributes = read_attributes(); });
+  return *lazy_->attributes;
+}
+
+Result<MeshAttributes> ModelFile::read_attributes() const {
   MeshAttributes attributes;
   Reading reading;
   reading.pose = pose_;
@@ -94,25 +113,37 @@ Result<MeshAttributes> ModelFile::attributes() const {
   if (format_ == MeshFormat::gltf) {
     list_gltf_dress({name_, bytes_->view()}, attributes);
     Result<FileNormals> normals = this->normals();
-    if (!normals) {
-      return normals.error();
+    if (normals) {
+      attributes.normals = std::move(normals->normals);
+      attributes.normal_of_corner = std::move(normals->of_corner);
+    } else { // the shape does not need them
+      attributes.others.emplace_back("normals, which are damaged");
     }
-    attributes.normals = std::move(normals->normals);
-    attributes.normal_of_corner = std::move(normals->of_corner);
   }
   return attributes;
 }
 
 Status ModelFile::rewrite(std::span<const Vec3> positions, std::span<const Vec3> normals,
                           const std::filesystem::path& out) const {
-  return rewrite_as(format_, {name_, bytes_->view()}, mesh_, path_.parent_path(), pose_, positions,
-                    normals, out);
+  if (normals.empty()) {
+    return rewrite_as(format_, {name_, bytes_->view()}, mesh_, path_.parent_path(), pose_,
+                      positions, {}, normals, out);
+  }
+  const Result<FileNormals> stored = this->normals();
+  return stored ? rewrite_as(format_, {name_, bytes_->view()}, mesh_, path_.parent_path(), pose_,
+                             positions, *stored, normals, out)
+                : stored.error();
+}
+
+bool ModelFile::keeps_format(const std::filesystem::path& out) const {
+  const std::optional<MeshFormat> named = format_of_name(out);
+  return named ? *named == format_ : out.extension() == path_.extension();
 }
 
 Result<std::vector<FileNote>> ModelFile::write_moved(std::span<const Vec3> positions,
                                                      std::span<const Vec3> normals,
                                                      const std::filesystem::path& out) const {
-  if (format_of_name(out) == format_of_name(path_)) {
+  if (keeps_format(out)) {
     const Status written = rewrite(positions, normals, out);
     return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
   }

@@ -50,9 +50,11 @@ Result<FileNormals> normals_in(const Source& source, MeshFormat format,
                                const std::optional<std::filesystem::path>& folder, Pose pose);
 
 /// See rewrite_positions(), for a file that read_as() has accepted as `mesh`.
+/// \param stored  its normals as normals_in() gives them; looked at only if `normals` has any
 Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& mesh,
                   const std::filesystem::path& folder, Pose pose, std::span<const Vec3> positions,
-                  std::span<const Vec3> normals, const std::filesystem::path& out);
+                  const FileNormals& stored, std::span<const Vec3> normals,
+                  const std::filesystem::path& out);
 
 /// The largest value of a channel, whatever the scale: for what a file leaves out.
 inline constexpr float full_channel = std::numeric_limits<float>::infinity();

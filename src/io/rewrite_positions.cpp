@@ -425,7 +425,8 @@ Result<FileNormals> normals_in(const Source& source, MeshFormat format,
 
 Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& mesh,
                   const std::filesystem::path& folder, Pose pose, std::span<const Vec3> positions,
-                  std::span<const Vec3> normals, const std::filesystem::path& out) {
+                  const FileNormals& stored, std::span<const Vec3> normals,
+                  const std::filesystem::path& out) {
   if (!all_finite(positions) || !all_finite(normals)) {
     return Error{ErrorCode::cannot_write, one_line(out.string()) +
                                               ": a position or normal is not finite; check where "
@@ -438,15 +439,8 @@ Status rewrite_as(MeshFormat format, const Source& source, const PolygonMesh& me
   if (!vertices) {
     return vertices;
   }
-  FileNormals stored;
   if (!normals.empty()) {
-    Result<FileNormals> found = normals_in(source, format, folder, pose);
-    if (!found) {
-      return found.error();
-    }
-    stored = std::move(*found);
-    const Status same = check_count(source, "normal", stored.normals.size(), normals.size());
-    if (!same) {
+    if (Status same = check_count(source, "normal", stored.normals.size(), normals.size()); !same) {
       return same;
     }
   }
@@ -464,17 +458,6 @@ Status rewrite_positions(const std::filesystem::path& original, std::span<const 
                          Pose pose) {
   const Result<ModelFile> file = ModelFile::open(original, pose);
   return file ? file->rewrite(positions, normals, out) : file.error();
-}
-
-Status write_moved(const std::filesystem::path& original, const PolygonMesh& mesh,
-                   std::span<const Vec3> positions, std::span<const Vec3> normals,
-                   const std::filesystem::path& out, Pose pose) {
-  if (!original.empty() && format_of_name(original) == format_of_name(out)) {
-    return rewrite_positions(original, positions, normals, out, pose);
-  }
-  PolygonMesh moved = mesh;
-  moved.positions.assign(positions.begin(), positions.end());
-  return write_mesh(moved, out);
 }
 
 } // namespace cagewright

@@ -172,6 +172,33 @@ class Deform(InAFolder):
         self.assert_refused(run("deform", self.model, self.rest, *frames, "-o", self.out),
                             BAD_INPUT, "is one file, but there are 3")
 
+    def test_a_sequence_in_another_format_keeps_what_it_holds_and_warns_once(self):
+        for i in (1, 2, 3):
+            self.file(f"frame_{i}.obj", cage(lambda x, y, z, i=i: (-y, x + i, z)))
+        done = run("deform", self.model, self.rest, self.folder / "frame_*.obj", "-o", self.folder / "m_*.ply")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual(done.stderr.count("PLY cannot hold all"), 1, done.stderr)
+        self.assertIn("materials", done.stderr)
+        for i in (1, 2, 3):
+            back = self.folder / f"back_{i}.obj"
+            run("convert", self.folder / f"m_frame_{i}.ply", back)
+            self.assert_near(rows(back, "v"), [[-y, x + i, z] for x, y, z in rows(self.model, "v")], 1e-12)
+
+    def test_normals_follow_into_another_format(self):
+        smooth = self.file("smooth.obj", "v 0 0 0\nv .2 0 0\nv 0 .2 0\nv 0 0 .2\nvn -1 -1 -1\nvn 1 0 0\nvn 0 1 0\nvn 0 0 1\n"
+                                         "f 1//1 3//3 2//2\nf 1//1 2//2 4//4\nf 1//1 4//4 3//3\nf 2//2 3//3 4//4\n")
+        turned = self.file("turned.obj", cage(lambda x, y, z: (-y, x, z)))
+        through = [self.folder / f"through.{kind}" for kind in ("ply", "off")]
+        for path in through:
+            self.assertEqual(run("deform", smooth, self.rest, turned, "-o", path).returncode, DONE)
+            back = self.folder / "back.obj"
+            self.assertEqual(run("convert", path, back).returncode, DONE)
+            self.assert_near(rows(back, "vn"), [[-y, x, z] for x, y, z in rows(smooth, "vn")], 1e-9)
+
+    def test_refuses_formats_it_cannot_write_before_the_work(self):
+        self.assert_refused(run("deform", self.model, self.rest, self.pose, "-o", self.folder / "x.fbx"),
+                            BAD_INPUT, ".obj, .ply, .stl or .off")
+
     def test_moves_one_group_only(self):
         done = run("deform", self.model, self.rest, self.pose, "-o", self.out, "--only", "small")
         self.assertEqual(done.returncode, DONE, done.stderr)
@@ -247,6 +274,7 @@ class Deform(InAFolder):
         model.write_bytes(box_glb(normals=20))
         done = run("deform", model, self.rest, self.pose, "-o", self.out)
         self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("left out are normals, which are damaged", done.stderr)
         self.out.unlink()
         self.assert_refused(run("deform", model, self.rest, self.pose, "-o", out), BAD_INPUT,
                             "a normal for each vertex")

@@ -29,7 +29,7 @@ struct FileNote {
   std::string message; ///< for people: one line with the file, the place, and what was done
 };
 
-/// A model in a file. Copies share the bytes.
+/// A model in a file. Copies share the bytes. Several threads may use one.
 class ModelFile {
 public:
   /// Reads the file. Errors: those of read_mesh().
@@ -47,19 +47,24 @@ public:
   [[nodiscard]] PolygonMesh take_mesh() && { return std::move(mesh_); }
   [[nodiscard]] std::span<const FileNote> notes() const { return notes_; }
 
-  /// See read_normals(). The file is not read again, but its bytes are looked at once more.
+  /// See read_normals(). The first call costs one more pass over the bytes.
   [[nodiscard]] Result<FileNormals> normals() const;
 
-  /// Texture points, normals, materials and the like. Cost: one more pass over the bytes.
+  /// Texture points, normals, materials and the like. The first call costs one more pass over the
+  /// bytes.
   [[nodiscard]] Result<MeshAttributes> attributes() const;
 
   /// See rewrite_positions().
   Status rewrite(std::span<const Vec3> positions, std::span<const Vec3> normals,
                  const std::filesystem::path& out) const;
 
-  /// Writes the model with other positions. Where `out` is named for the format of the file it is
-  /// the same file again: see rewrite_positions(). Else it is written by write_mesh() with the
-  /// attributes that the other format holds; the normals follow the given ones.
+  /// Whether write_moved() writes the same file again: `out` is named for the format that the
+  /// file has, or named as the file is with an extension that no format has.
+  [[nodiscard]] bool keeps_format(const std::filesystem::path& out) const;
+
+  /// Writes the model with other positions. Where keeps_format(out) it is the same file again: see
+  /// rewrite_positions(). Else it is written by write_mesh() with the attributes that the other
+  /// format holds; the normals follow the given ones. For many poses: the file is not read again.
   ///
   /// \param positions  V, in the order of mesh()
   /// \param normals    as many as normals() gives, or none: then those of the file stay
@@ -70,9 +75,12 @@ public:
                                             const std::filesystem::path& out) const;
 
 private:
-  ModelFile() = default;
+  struct Lazy; // what is read when it is first asked for
+
+  ModelFile();
   void hold(FileBytes bytes);
   static Result<ModelFile> read(ModelFile file);
+  [[nodiscard]] Result<MeshAttributes> read_attributes() const;
 
   std::filesystem::path path_;
   std::string name_;     // in messages
@@ -82,6 +90,7 @@ private:
   std::shared_ptr<const FileBytes> bytes_; // text in UTF-16 stands here as UTF-8
   PolygonMesh mesh_;
   std::vector<FileNote> notes_;
+  std::shared_ptr<Lazy> lazy_;
 };
 
 } // namespace cagewright

@@ -67,12 +67,4 @@ Status rewrite_positions(const std::filesystem::path& original, std::span<const 
                          std::span<const Vec3> normals, const std::filesystem::path& out,
                          Pose pose = Pose::shown);
 
-/// Writes the mesh that was read from `original` with other positions: by rewrite_positions() if
-/// `out` is named for the same format, else by write_mesh(), without normals.
-///
-/// Errors: theirs.
-Status write_moved(const std::filesystem::path& original, const PolygonMesh& mesh,
-                   std::span<const Vec3> positions, std::span<const Vec3> normals,
-                   const std::filesystem::path& out, Pose pose = Pose::shown);
-
 } // namespace cagewright
