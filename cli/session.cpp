@@ -1,5 +1,7 @@
 #include "session.h"
 
+#include <cagewright/core/steady_report.h>
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -29,15 +31,16 @@ Progress Session::progress() const {
   if (quiet || isatty(STDERR_FILENO) == 0) {
     return Progress(stop);
   }
-  return Progress(stop, [last = std::make_shared<int>(-1)](double fraction, std::string_view step) {
-    const int percent = static_cast<int>(fraction * 100);
-    if (percent != *last) {
-      *last = percent;
-      std::fprintf(stderr, "\r\033[K%3d %%  %.*s%s", percent, static_cast<int>(step.size()),
-                   step.data(), percent >= 100 ? "\r\033[K" : "");
-      std::fflush(stderr);
-    }
-  });
+  return Progress(
+      stop, steady([last = std::make_shared<int>(-1)](double fraction, std::string_view step) {
+        const int percent = static_cast<int>(fraction * 100);
+        if (percent != *last) {
+          *last = percent;
+          std::fprintf(stderr, "\r\033[K%3d %%  %.*s%s", percent, static_cast<int>(step.size()),
+                       step.data(), percent >= 100 ? "\r\033[K" : "");
+          std::fflush(stderr);
+        }
+      }));
 }
 
 void Session::say(std::string_view text) const {

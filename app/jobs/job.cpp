@@ -1,5 +1,7 @@
 #include "app/jobs/job.h"
 
+#include <cagewright/core/steady_report.h>
+
 #include <QMetaObject>
 
 #include <algorithm>
@@ -36,14 +38,11 @@ void Job::start(Work work) {
   clock_.start();
   thread_ = std::jthread([this, work = std::move(work)](const std::stop_token& stop) {
     // Reports come one at a time; more than thirty a second would only burden the window.
-    // A bar that goes back looks like a mistake: it waits instead.
     auto last = std::chrono::steady_clock::time_point();
-    double greatest = 0;
     const StopFlag flag;
     const std::stop_callback link(stop, [flag] { flag.request_stop(); });
     const Progress progress(
-        flag, [this, last, greatest](double fraction, std::string_view step) mutable {
-          fraction = greatest = std::max(greatest, fraction);
+        flag, steady([this, last](double fraction, std::string_view step) mutable {
           const auto now = std::chrono::steady_clock::now();
           if (now - last < std::chrono::milliseconds(33) && fraction < 1) {
             return;
@@ -53,7 +52,7 @@ void Job::start(Work work) {
           QMetaObject::invokeMethod(
               this, [this, fraction, text] { Q_EMIT progressed(fraction, text); },
               Qt::QueuedConnection);
-        });
+        }));
     Result<Apply> result = run(work, progress);
     QMetaObject::invokeMethod(
         this,

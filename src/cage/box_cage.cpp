@@ -66,12 +66,15 @@ Result<TriangleMesh> cage_of(const std::vector<Hexahedron>& solids, double separ
 }
 
 /// Quads that would make the cage invalid along their other diagonal are left as triangles.
-PolygonMesh with_quads(const TriangleMesh& cage, TriangleView model, bool allow_pieces) {
+PolygonMesh with_quads(const TriangleMesh& cage, TriangleView model, bool allow_pieces,
+                       const Progress& progress) {
   PolygonMesh faces = pair_coplanar(cage);
   constexpr int attempts = 8;
   for (int attempt = 0; attempt < attempts; ++attempt) {
+    const Progress part =
+        progress.part(static_cast<double>(attempt) / attempts, (attempt + 1.0) / attempts);
     const Result<ValidityReport> report = validate_cage(
-        faces, model, {.allow_pieces = allow_pieces, .max_listed = faces.face_count()});
+        faces, model, {.allow_pieces = allow_pieces, .max_listed = faces.face_count()}, part);
     if (!report) {
       break;
     }
@@ -107,54 +110,57 @@ PolygonMesh with_quads(const TriangleMesh& cage, TriangleView model, bool allow_
 
 } // namespace
 
-Result<BoxCage> make_box_cage(TriangleView model, const BoxCageOptions& options,
+Result<BoxCage> make_box_cage(TriangleView model, const GenerateOptions& options, double clearance,
                               const Progress& progress) {
-  Result<BoxDecomposition> boxes = decompose(model, options.boxes, progress.part(0, decomposed));
+  DecomposeOptions splitting = decompose_options(options);
+  splitting.clearance = clearance;
+  Result<BoxDecomposition> boxes = decompose(model, splitting, progress.part(0, decomposed));
   if (!boxes) {
     return boxes.error();
   }
+  auto parts = std::make_shared<BoxesMade>();
+  parts->boxes = std::move(*boxes);
+  parts->leaves = parts->boxes.tree.cover();
   BoxCage made;
-  made.boxes = std::move(*boxes);
-  made.leaves = made.boxes.tree.cover();
-  made.times = made.boxes.times;
+  made.times = parts->boxes.times;
   Stopwatch watch(made.times);
 
-  const std::vector<BoxContents> contents = contents_of(made.boxes.tree, made.leaves);
-  made.registration = keep_apart(contents);
+  const std::vector<BoxContents> contents = contents_of(parts->boxes.tree, parts->leaves);
+  parts->registration = keep_apart(contents);
   if (options.registration) {
-    Result<Registration> joined = register_boxes(in_grid_coordinates(made.boxes.grid), contents, {},
-                                                 progress.part(decomposed, registered));
+    Result<Registration> joined = register_boxes(in_grid_coordinates(parts->boxes.grid), contents,
+                                                 {}, progress.part(decomposed, registered));
     if (!joined) {
       return joined.error();
     }
-    made.registration = std::move(*joined);
+    parts->registration = std::move(*joined);
   }
   watch.lap("registration");
 
+  const bool allow_pieces = options.pieces == Pieces::apart;
   Error why;
   double begin = registered;
   for (const double separation : separations) {
     const double end = begin + first_union * (1 - begin); // what is left is for another, if need be
-    Result<TriangleMesh> cage =
-        cage_of(made.registration.solids, separation, made.boxes, model,
-                options.boxes.pieces == Pieces::apart, watch, progress.part(begin, end));
+    Result<TriangleMesh> cage = cage_of(parts->registration.solids, separation, parts->boxes, model,
+                                        allow_pieces, watch, progress.part(begin, end));
     begin = end;
     if (cage) {
       made.cage = std::move(*cage);
-      made.faces = options.quads
-                       ? with_quads(made.cage, model, options.boxes.pieces == Pieces::apart)
-                       : PolygonMesh(made.cage);
+      made.faces = options.quads ? with_quads(made.cage, model, allow_pieces, progress.part(end, 1))
+                                 : PolygonMesh(made.cage);
       if (options.quads) {
         made.cage = to_triangle_mesh(made.faces);
         watch.lap("quads");
       }
-      return made;
+      made.made = std::move(parts);
+      return progress.cancelled() ? Result<BoxCage>(Error::cancelled()) : std::move(made);
     }
     why = cage.error();
     if (why.code != ErrorCode::no_valid_cage) {
       break;
     }
-    made.registration = keep_apart(contents); // the simpler the solids, the surer their union
+    parts->registration = keep_apart(contents); // the simpler the solids, the surer their union
   }
   return why;
 }

@@ -10,15 +10,10 @@
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
+#include <memory>
 #include <vector>
 
 namespace cagewright {
-
-struct BoxCageOptions {
-  DecomposeOptions boxes = {};
-  bool registration = true; ///< join the faces of neighbouring boxes where they fit
-  bool quads = false;       ///< make quads of pairs of triangles in one plane
-};
 
 /// How the boxes of a cage were found.
 struct BoxesMade {
@@ -27,10 +22,11 @@ struct BoxesMade {
   Registration registration; ///< the solids that were united, in grid coordinates
 };
 
-struct BoxCage : BoxesMade {
+struct BoxCage {
   TriangleMesh cage; ///< valid in the sense of validate_cage(), on exactly these coordinates
   PolygonMesh faces; ///< what is written: `cage`, or with quads; valid along either diagonal
-  std::vector<StageTime> times; ///< of all stages, those of `boxes` included
+  std::shared_ptr<const BoxesMade> made;
+  std::vector<StageTime> times; ///< of all stages, those of the decomposition included
 };
 
 /// A cage of the model: the union of the boxes of a decomposition, checked exactly against the
@@ -38,7 +34,10 @@ struct BoxCage : BoxesMade {
 ///
 /// Errors: those of decompose(), and no_valid_cage when the result did not pass the check.
 /// Cost: below a second before the union for 100,000 triangles; the union takes 2 to 20 ms a box.
-Result<BoxCage> make_box_cage(TriangleView model, const BoxCageOptions& options = {},
-                              const Progress& progress = {});
+///
+/// \param clearance  in diagonals, that the boxes keep; 0: they enclose the voxels that touch the
+///                   model
+Result<BoxCage> make_box_cage(TriangleView model, const GenerateOptions& options = {},
+                              double clearance = 0, const Progress& progress = {});
 
 } // namespace cagewright

@@ -96,8 +96,9 @@ CanonicalModel canonical_model(TriangleView model, const UnitFrame& frame, doubl
   return result;
 }
 
-void bring_back(BudgetCage& made, TriangleView model, const UnitFrame& frame) {
-  for (Vec3& p : made.cage.positions) {
+void bring_back(GeneratedCage& made, TriangleView model, const UnitFrame& frame) {
+  std::vector<Vec3>& positions = made.faces.positions;
+  for (Vec3& p : positions) {
     p = frame.from_unit(p);
   }
   if (made.mirror) {
@@ -105,10 +106,13 @@ void bring_back(BudgetCage& made, TriangleView model, const UnitFrame& frame) {
     plane.offset = plane.offset * frame.diagonal + plane.normal.dot(frame.center);
     const MirrorFrame mirror(plane, bounding_box(model.positions));
     plane = mirror.plane();
-    pair_exactly(made.cage.positions, *made.mirror, mirror);
+    pair_exactly(positions, *made.mirror, mirror);
   }
-  if (made.polygons) {
-    made.polygons->positions = made.cage.positions; // triangles have the same vertices
+  made.triangles.positions = positions; // triangles have the same vertices
+  for (Remark& remark : made.remarks) {
+    if (remark.place) {
+      remark.place = frame.from_unit(*remark.place);
+    }
   }
 }
 

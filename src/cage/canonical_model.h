@@ -3,8 +3,9 @@
 /// module.
 #pragma once
 
-#include "cage/budget_cage.h"
 #include "cage/unit_frame.h"
+#include <cagewright/cage/generated_cage.h>
+#include <cagewright/mesh/triangle_mesh.h>
 
 #include <vector>
 
@@ -29,6 +30,6 @@ CanonicalModel canonical_model(TriangleView model, const UnitFrame& frame, doubl
 
 /// A cage of the canonical model as one of the model that it was made from. Vertices that are each
 /// other's mirror images are paired anew, exactly across one of the world's axes: see MirrorFrame.
-void bring_back(BudgetCage& made, TriangleView model, const UnitFrame& frame);
+void bring_back(GeneratedCage& made, TriangleView model, const UnitFrame& frame);
 
 } // namespace cagewright

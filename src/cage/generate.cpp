@@ -1,24 +1,179 @@
+// The whole pipeline on one page: what is asked for is checked; a cage of boxes is their union; any
+// other is one closed surface (surface.h), or one for each group of pieces that are apart
+// (piece_cages.h), by halves where the model is its own mirror image. Each surface goes from a
+// start (start.h) on its ground (ground.h) through triangles (triangle_stage.h) or quads
+// (quad_stage.h) to the exact check. All that is done on the canonical model (canonical_model.h),
+// and checked on the model itself.
 #include <cagewright/cage/generate.h>
 
 #include "cage/box_cage.h"
-#include "cage/budget_cage.h"
+#include "cage/budget.h"
+#include "cage/canonical_model.h"
+#include "cage/mirroring.h"
+#include "cage/part_maker.h"
+#include "cage/piece_cages.h"
+#include "cage/stage_time.h"
+#include "cage/surface.h"
+#include "cage/triangle_stage.h"
+#include "cage/unit_frame.h"
+#include "quads/quads.h"
 #include <cagewright/cage/option_table.h>
-#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace cagewright {
 namespace {
 
 constexpr double made_by = 0.97; // of the time; the figures come after
 
-BoxCageOptions box_options(const GenerateOptions& options) {
-  BoxCageOptions boxes;
-  boxes.boxes = decompose_options(options);
-  boxes.registration = options.registration;
-  boxes.quads = options.quads;
-  return boxes;
+Status check(TriangleView model, const GenerateOptions& options) {
+  if (const Status in_range = check_ranges(options); !in_range) {
+    return in_range;
+  }
+  if (options.method == Method::boxes) {
+    return success();
+  }
+  if (vertices_allowed(options) == 0 && options.max_gap == 0) {
+    return Error{ErrorCode::invalid_option,
+                 "the cage needs a limit: give a number of vertices or faces, or a greatest gap"};
+  }
+  if (!options.density.empty() && options.density.size() != model.positions.size()) {
+    return Error{ErrorCode::invalid_option, "there must be one density for each model vertex"};
+  }
+  return options.max_gap == 0 ? success() : can_keep_gap(options.max_gap, options.clearance);
+}
+
+Result<GeneratedCage> union_of_boxes(TriangleView model, const GenerateOptions& options,
+                                     const Progress& progress) {
+  Result<BoxCage> made = make_box_cage(model, options, 0, progress);
+  if (!made) {
+    return made.error();
+  }
+  GeneratedCage result;
+  result.method = Method::boxes;
+  result.faces = std::move(made->faces);
+  result.triangles = std::move(made->cage);
+  result.start_vertices = result.triangles.positions.size();
+  result.bridges = made->made->boxes.bridges;
+  result.box_tree = std::move(made->made);
+  result.times = std::move(made->times);
+  if (options.quads) {
+    result.quads = report_of(result.faces);
+  }
+  return result;
+}
+
+/// A closed surface for each group of pieces that are apart, mirrored if they can be.
+Result<GeneratedCage> surfaces_apart(TriangleView model, const GenerateOptions& options,
+                                     const Mirroring& mirroring, const Progress& progress) {
+  constexpr double usual = 0.9; // of the time: hardly ever are mirrored pieces not to be had
+  std::string why_not = mirroring.why_not;
+  if (mirroring.plane) {
+    const PartMaker maker(model, options, mirroring.plane);
+    Result<GeneratedCage> mirrored =
+        make_pieces(model, options, mirroring.plane, maker,
+                    progress.part(0, mirroring.is_insisted_on ? 1 : usual));
+    if (mirrored || mirroring.is_insisted_on || mirrored.error().code == ErrorCode::cancelled) {
+      return mirrored;
+    }
+    why_not = mirrored.error().message;
+  }
+  const PartMaker maker(model, options, std::nullopt);
+  Result<GeneratedCage> made = make_pieces(model, options, std::nullopt, maker,
+                                           progress.part(mirroring.plane ? usual : 0, 1));
+  if (made && !why_not.empty()) {
+    add(*made, {Reason::not_mirrored, why_not, mirroring.is_insisted_on, {}});
+  }
+  return made;
+}
+
+/// One closed surface or several, improved.
+/// \param origin  of the user's coordinates
+Result<GeneratedCage> surfaces(TriangleView model, const GenerateOptions& options,
+                               const Vec3& origin, const Progress& progress) {
+  constexpr double counted = 0.02; // of the time
+  constexpr double plane_found = 0.07;
+  bool are_apart = false;
+  if (options.pieces == Pieces::apart) {
+    const Result<bool> apart = has_pieces_apart(model, options, progress.part(0, counted));
+    if (!apart) {
+      return apart.error();
+    }
+    are_apart = *apart;
+  }
+  std::vector<StageTime> times;
+  Stopwatch watch(times);
+  const Mirroring mirroring =
+      choose_mirroring(model, options, origin, progress.part(counted, plane_found));
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
+  if (options.symmetry != Symmetry::off) {
+    watch.lap("symmetry");
+  }
+  const Progress making = progress.part(plane_found, 1);
+  Result<GeneratedCage> made = are_apart ? surfaces_apart(model, options, mirroring, making)
+                                         : make_surface(model, options, mirroring, making);
+  if (made) {
+    made->times.insert(made->times.begin(), times.begin(), times.end());
+  }
+  return made;
+}
+
+/// Whether the cage can be made of the canonical model. A gap as narrow as the clearance allows
+/// leaves no room for rounding; and boxes are told in the model's own coordinates.
+bool has_room_for(double grid, const GenerateOptions& options) {
+  return options.method == Method::envelope &&
+         (options.max_gap == 0 || can_keep_gap(options.max_gap - grid, options.clearance + grid));
+}
+
+/// The same cage wherever the model is and in whatever unit and order: that of the canonical model,
+/// which is judged against the model itself.
+Result<GeneratedCage> improved_cage(TriangleView model, const GenerateOptions& options,
+                                    const Progress& progress) {
+  const Result<UnitFrame> frame = unit_frame(model);
+  if (!frame) {
+    return frame.error();
+  }
+  const double grid = canonical_grid(options.clearance);
+  if (!has_room_for(grid, options)) {
+    return surfaces(model, options, Vec3::Zero(), progress);
+  }
+  constexpr double usual = 0.98; // of the time
+  const CanonicalModel canonical = canonical_model(model, *frame, grid);
+  GenerateOptions own = options;
+  own.clearance += grid;
+  own.max_gap -= options.max_gap > 0 ? grid : 0;
+  std::vector<double> density;
+  if (!options.density.empty()) {
+    for (const Index v : canonical.vertices) {
+      density.push_back(options.density[v]);
+    }
+    own.density = density;
+  }
+  Result<GeneratedCage> made =
+      surfaces(canonical.mesh, own, frame->to_unit(Vec3::Zero()), progress.part(0, usual));
+  if (!made) {
+    return made;
+  }
+  bring_back(*made, model, *frame);
+  made->clearance = std::min(options.clearance, made->clearance);
+  if (made->gap) {
+    *made->gap += grid;
+  }
+  const Progress checking = progress.part(usual, 1);
+  const Result<ValidityReport> validity = validate_cage(
+      made->faces, model, {.allow_pieces = made->pieces > 1, .first_only = true}, checking);
+  if (!validity) {
+    return validity.error();
+  }
+  return validity->valid() ? std::move(made) : surfaces(model, options, Vec3::Zero(), checking);
 }
 
 std::vector<CageBox> boxes_of(const BoxesMade& made) {
@@ -31,101 +186,28 @@ std::vector<CageBox> boxes_of(const BoxesMade& made) {
   return boxes;
 }
 
-void keep_boxes(GeneratedCage& result, BoxesMade made) {
-  result.boxes = boxes_of(made);
-  result.box_tree = std::make_shared<const BoxesMade>(std::move(made));
+std::string coordinates(const Vec3& p) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g", p.x(), p.y(), p.z());
+  return text.data();
 }
 
-Result<GeneratedCage> union_of_boxes(TriangleView model, const GenerateOptions& options,
-                                     const Progress& progress) {
-  Result<BoxCage> made = make_box_cage(model, box_options(options), progress);
-  if (!made) {
-    return made.error();
+/// The places are known last, in the model's own coordinates.
+void finish_remarks(GeneratedCage& cage) {
+  if (cage.joined > 0) {
+    add(cage, {Reason::pieces_joined,
+               "pieces share a surface where their own would meet, lie one within another, or be "
+               "too small for the budget",
+               false,
+               {}});
   }
-  GeneratedCage result;
-  result.method = Method::boxes;
-  result.faces = std::move(made->faces);
-  result.triangles = std::move(made->cage);
-  result.start_vertices = result.triangles.positions.size();
-  result.bridges = made->boxes.bridges;
-  result.times = std::move(made->times);
-  if (options.quads) {
-    result.quads = report_of(result.faces);
+  for (Remark& remark : cage.remarks) {
+    if (remark.place) {
+      remark.message += " (at " + coordinates(*remark.place) + ")";
+    }
   }
-  keep_boxes(result, std::move(*made));
-  return result;
-}
-
-std::vector<Remark> remarks_of(const BudgetCage& made, const GenerateOptions& options) {
-  std::vector<Remark> remarks;
-  if (!made.report.reached) {
-    const bool is_gap = options.max_gap > 0 && !(made.gap && *made.gap <= options.max_gap);
-    remarks.push_back(
-        {is_gap ? Reason::gap_not_kept : Reason::budget_not_reached, made.report.why_not, true});
-  }
-  if (made.clearance < made.clearance_asked) {
-    remarks.push_back({Reason::clearance_not_kept,
-                       "the boxes came nearer to the model than the clearance asked for", true});
-  }
-  if (!made.why_not_boxes.empty()) {
-    remarks.push_back({Reason::boxes_not_possible, made.why_not_boxes, true});
-  }
-  if (!made.mirror && !made.why_not_mirrored.empty()) {
-    remarks.push_back(
-        {Reason::not_mirrored, made.why_not_mirrored, options.symmetry != Symmetry::automatic});
-  }
-  if (made.joined > 0) {
-    remarks.push_back({Reason::pieces_joined,
-                       "pieces share a surface where their own would meet, lie one within another, "
-                       "or be too small for the budget",
-                       false});
-  }
-  std::stable_partition(remarks.begin(), remarks.end(),
+  std::stable_partition(cage.remarks.begin(), cage.remarks.end(),
                         [](const Remark& remark) { return remark.is_shortfall; });
-  return remarks;
-}
-
-Result<GeneratedCage> improved_cage(TriangleView model, const GenerateOptions& options,
-                                    const Progress& progress) {
-  BudgetCageOptions budget;
-  budget.start = options.method == Method::envelope ? CageStart::envelope : CageStart::obb;
-  budget.improve.vertices = vertex_limit(options);
-  budget.improve.faces = options.faces;
-  budget.improve.clearance = options.clearance;
-  budget.improve.rounds = options.rounds;
-  budget.improve.density = options.density;
-  budget.max_gap = options.max_gap;
-  budget.resolution = options.envelope_resolution;
-  budget.closing = options.closing;
-  budget.boxes = box_options(options);
-  budget.symmetry = options.symmetry;
-  budget.quads = options.quads;
-  Result<BudgetCage> made = make_budget_cage(model, budget, progress);
-  if (!made) {
-    return made.error();
-  }
-  GeneratedCage result;
-  result.method = made->boxes ? Method::boxes_improved : Method::envelope;
-  result.remarks = remarks_of(*made, options);
-  result.faces = made->polygons ? std::move(*made->polygons) : PolygonMesh(made->cage);
-  result.triangles = std::move(made->cage);
-  result.start_vertices = made->start_vertices;
-  result.resolution = made->resolution;
-  result.genus = made->genus;
-  result.bridges = made->bridges;
-  result.pieces = made->pieces;
-  result.joined = made->joined;
-  result.objective = made->report.objective;
-  result.clearance = made->clearance;
-  result.gap = made->gap;
-  result.quads = made->quads;
-  result.limb_rings = std::move(made->limb_rings);
-  result.mirror = std::move(made->mirror);
-  result.times = std::move(made->times);
-  if (made->boxes) {
-    keep_boxes(result, std::move(*made->boxes));
-  }
-  return result;
 }
 
 } // namespace
@@ -154,22 +236,22 @@ bool GeneratedCage::is_as_asked() const {
 
 Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& options,
                                const Progress& progress) {
-  if (const Status in_range = check_ranges(options); !in_range) {
-    return in_range.error();
-  }
-  const bool has_limit = vertex_limit(options) > 0 || options.faces > 0 || options.max_gap > 0;
-  if (options.method != Method::boxes && !has_limit) {
-    return Error{ErrorCode::invalid_option,
-                 "the cage needs a limit: give a number of vertices or faces, or a greatest gap"};
+  if (const Status good = check(model, options); !good) {
+    return good.error();
   }
   const Progress making = progress.part(0, made_by);
   Result<GeneratedCage> made = options.method == Method::boxes
                                    ? union_of_boxes(model, options, making)
                                    : improved_cage(model, options, making);
-  if (made) {
-    made->figures = measure_cage(made->faces, model);
-    progress(1, "done");
+  if (!made) {
+    return made;
   }
+  if (made->box_tree) {
+    made->boxes = boxes_of(*made->box_tree);
+  }
+  finish_remarks(*made);
+  made->figures = measure_cage(made->faces, model);
+  progress(1, "done");
   return made;
 }
 

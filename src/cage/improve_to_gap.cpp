@@ -1,8 +1,6 @@
-#include "cage/improve_to_gap.h"
+#include "cage/triangle_stage.h"
 
 #include "core/maths.h"
-#include "spatial/bvh.h"
-#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <array>
@@ -32,10 +30,9 @@ std::string percent(double fraction) {
 
 class Search {
 public:
-  Search(TriangleView start, TriangleView model, const ImproveOptions& options, double max_gap,
-         const MeasureGap& measure)
-      : start_(start), model_(model), options_(options), max_gap_(max_gap), measure_(measure),
-        diagonal_(options.diagonal > 0 ? options.diagonal : diagonal(model.positions)) {
+  Search(const Ground& ground, TriangleView start, const ImproveOptions& options, double max_gap)
+      : ground_(ground), start_(start), model_(ground.enclosed()), options_(options),
+        max_gap_(max_gap), diagonal_(ground.diagonal()) {
     limit_ = std::min(most, vertices_of(start));
     if (options.vertices > 0) {
       limit_ = std::min(limit_, options.vertices);
@@ -46,7 +43,7 @@ public:
     limit_ = std::max(limit_, fewest);
   }
 
-  Result<ImprovedToGap> run(const Progress& progress) {
+  Result<Triangles> run(const Progress& progress) {
     constexpr double direct = 0.5; // of the progress
     if (const Status made = try_directly(progress.part(0, direct)); !made) {
       return made.error();
@@ -66,31 +63,25 @@ public:
     if (fine_) {
       return std::move(*fine_);
     }
-    ImprovedToGap& nearest = *nearest_;
+    Triangles& nearest = *nearest_;
     nearest.improved.report.reached = false;
     nearest.improved.report.why_not =
-        "some points of the cage are " + percent(nearest.gap) +
-        " of the diagonal from the model, at (" + coordinates(nearest_place_) + "); " +
+        "some points of the cage are " + percent(*nearest.gap) +
+        " of the diagonal from the model; " +
         (coarse_ >= limit_ && limit_ < most && (options_.vertices > 0 || options_.faces > 0)
              ? "allow more vertices"
-             : "there may be a hole, a hollow or a bridge between pieces there: try --method "
-               "envelope, a finer --envelope-resolution, a smaller clearance, or pieces apart");
+             : "there may be a hole, a hollow or a bridge between pieces there: try the "
+               "envelope, a finer one, a smaller clearance, or pieces apart");
     return std::move(nearest);
   }
 
 private:
-  static std::string coordinates(const Vec3& p) {
-    std::array<char, 96> text{};
-    std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g", p.x(), p.y(), p.z());
-    return text.data();
-  }
-
   [[nodiscard]] int vertices_of(TriangleView cage) const {
-    return static_cast<int>(whole_vertices(cage.positions, options_.extent));
+    return static_cast<int>(ground_.vertices_of(cage.positions));
   }
 
   [[nodiscard]] GreatestGap gap_of(const TriangleMesh& cage) const {
-    return measure_(cage, bound_width * max_gap_ * diagonal_);
+    return ground_.gap_of(cage, bound_width * max_gap_ * diagonal_);
   }
 
   // The improvement heeds the gap at samples in each of its steps. If they have seen too little it
@@ -113,7 +104,7 @@ private:
       if (upper <= max_gap_ && count <= limit_) {
         improved->report.reached = true;
         improved->report.why_not.clear();
-        fine_ = ImprovedToGap{std::move(*improved), upper};
+        fine_ = Triangles{std::move(*improved), upper, std::nullopt};
         break;
       }
       over *= 1.01 * upper / max_gap_;
@@ -140,8 +131,8 @@ private:
     const GreatestGap gap = gap_of(improved->cage);
     const int made = vertices_of(improved->cage);
     const bool stuck = made > vertices;
-    ImprovedToGap result{std::move(*improved), gap.upper / diagonal_};
-    if (result.gap <= max_gap_) {
+    Triangles result{std::move(*improved), gap.upper / diagonal_, std::nullopt};
+    if (*result.gap <= max_gap_) {
       // Where the cage cannot be coarser than this, that is the end of the search.
       coarse_ = stuck ? std::max(coarse_, made - 1) : coarse_;
       if (!fine_ || made < fine_count_) {
@@ -153,11 +144,11 @@ private:
     } else {
       if (made > coarse_ || !nearest_) {
         coarse_ = std::max(coarse_, std::max(made, vertices));
-        coarse_gap_ = result.gap;
+        coarse_gap_ = *result.gap;
       }
-      if (!nearest_ || result.gap < nearest_->gap) {
+      if (!nearest_ || *result.gap < *nearest_->gap) {
         nearest_ = std::move(result);
-        nearest_place_ = gap.place;
+        nearest_->farthest = gap.place;
       }
     }
     return success();
@@ -179,31 +170,30 @@ private:
     }
     if (coarse_ == 0) {
       const double factor =
-          std::clamp(maths::pow(fine_->gap / max_gap_, 1 / usual_power), 0.25, 0.8);
+          std::clamp(maths::pow(*fine_->gap / max_gap_, 1 / usual_power), 0.25, 0.8);
       return std::max(fewest, static_cast<int>(factor * fine_count_));
     }
     // Between the two, as their gaps say.
     const double towards = maths::log(coarse_gap_ / max_gap_) /
-                           maths::log(coarse_gap_ / std::min(fine_->gap, max_gap_));
+                           maths::log(coarse_gap_ / std::min(*fine_->gap, max_gap_));
     const double guess = coarse_ * maths::pow(static_cast<double>(fine_count_) / coarse_, towards);
     return std::clamp(static_cast<int>(std::lround(guess)),
                       coarse_ + std::max(1, (fine_count_ - coarse_) / 4),
                       fine_count_ - std::max(1, (fine_count_ - coarse_) / 4));
   }
 
+  const Ground& ground_;
   TriangleView start_;
   TriangleView model_;
   const ImproveOptions& options_;
   double max_gap_;
-  const MeasureGap& measure_;
   double diagonal_;
   int limit_ = 0;
 
-  std::optional<ImprovedToGap> fine_; // the coarsest that keeps the gap
+  std::optional<Triangles> fine_; // the coarsest that keeps the gap
   int fine_count_ = 0;
-  std::optional<ImprovedToGap> nearest_; // the one with the least gap, of those that do not
-  Vec3 nearest_place_ = Vec3::Zero();
-  int coarse_ = 0; // the most vertices that were too few
+  std::optional<Triangles> nearest_; // the one with the least gap, of those that do not
+  int coarse_ = 0;                   // the most vertices that were too few
   double coarse_gap_ = 1;
 };
 
@@ -219,23 +209,10 @@ Status can_keep_gap(double max_gap, double clearance) {
                                               ": ask for a larger gap, or a smaller clearance"};
 }
 
-Result<ImprovedToGap> improve_to_gap(TriangleView start, TriangleView model,
-                                     const ImproveOptions& options, double max_gap,
-                                     const MeasureGap& measure, const Progress& progress) {
-  if (const Status can = can_keep_gap(max_gap, options.clearance); !can) {
-    return can.error();
-  }
-  return Search(start, model, options, max_gap, measure).run(progress);
-}
-
-Result<ImprovedToGap> improve_to_gap(TriangleView start, TriangleView model,
-                                     const ImproveOptions& options, double max_gap,
-                                     const Progress& progress) {
-  const TriangleBvh bvh(model);
-  const MeasureGap measure = [&](const TriangleMesh& cage, double tolerance) {
-    return greatest_gap(cage, bvh, tolerance);
-  };
-  return improve_to_gap(start, model, options, max_gap, measure, progress);
+Result<Triangles> improve_to_gap(const Ground& ground, TriangleView start,
+                                 const ImproveOptions& budget, double max_gap,
+                                 const Progress& progress) {
+  return Search(ground, start, budget, max_gap).run(progress);
 }
 
 } // namespace cagewright

@@ -7,30 +7,30 @@
 
 namespace cagewright {
 
-PartOptions options_for(const ModelPart& part, double whole, const BudgetCageOptions& options) {
+PartOptions options_for(const ModelPart& part, double whole, const GenerateOptions& options) {
   PartOptions result{options, {}};
-  BudgetCageOptions& own = result.options;
+  GenerateOptions& own = result.options;
   const double factor = whole / diagonal(part.mesh.positions);
-  own.boxes.boxes.pieces = Pieces::together;
-  own.improve.clearance *= factor;
+  own.pieces = Pieces::together;
+  own.clearance *= factor;
   own.max_gap *= factor;
   own.closing = std::min(0.5, own.closing * factor);
-  if (own.resolution > 0) {
-    own.resolution = std::max(8, static_cast<int>(std::lround(own.resolution / factor)));
+  if (own.envelope_resolution > 0) {
+    own.envelope_resolution =
+        std::max(8, static_cast<int>(std::lround(own.envelope_resolution / factor)));
   }
-  if (!options.improve.density.empty()) {
+  if (!options.density.empty()) {
     for (const Index v : part.vertices) {
-      result.density.push_back(options.improve.density[v]);
+      result.density.push_back(options.density[v]);
     }
-    own.improve.density = result.density;
+    own.density = result.density;
   }
   return result;
 }
 
-void restate(BudgetCage& cage, double factor) {
+void restate(GeneratedCage& cage, double factor) {
   cage.clearance *= factor;
-  cage.clearance_asked *= factor;
-  cage.report.objective *= factor * factor * factor;
+  cage.objective *= factor * factor * factor;
   if (cage.gap) {
     *cage.gap *= factor;
   }

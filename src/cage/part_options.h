@@ -3,15 +3,15 @@
 /// this module.
 #pragma once
 
-#include "cage/budget_cage.h"
 #include "cage/pieces.h"
+#include <cagewright/cage/generated_cage.h>
 
 #include <vector>
 
 namespace cagewright {
 
 struct PartOptions {
-  BudgetCageOptions options;
+  GenerateOptions options;
   std::vector<double> density; ///< that the options refer to, if the model has one
 };
 
@@ -19,11 +19,11 @@ struct PartOptions {
 /// own diagonals.
 ///
 /// \param whole  diagonal that the lengths of `options` are stated in
-PartOptions options_for(const ModelPart& part, double whole, const BudgetCageOptions& options);
+PartOptions options_for(const ModelPart& part, double whole, const GenerateOptions& options);
 
 /// States the lengths of a cage round a part in other diagonals.
 ///
 /// \param factor  the diagonal they are stated in over the new one
-void restate(BudgetCage& cage, double factor);
+void restate(GeneratedCage& cage, double factor);
 
 } // namespace cagewright

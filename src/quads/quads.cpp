@@ -1,5 +1,6 @@
 #include "quads/quads.h"
 
+#include "mesh/shape_limits.h"
 #include "quads/edge_loops.h"
 #include "quads/matching.h"
 #include "quads/pairing.h"
@@ -96,7 +97,8 @@ QuadCage with_enough_quads(const QuadCage& roomy, const Setting& setting,
   QuadCage best = roomy;
   double most = -1;
   double done = 0;
-  for (std::size_t i = 0; i < lone.size() && most < enough_quads && !progress.cancelled(); ++i) {
+  for (std::size_t i = 0;
+       i < lone.size() && most < shape_limits::enough_quads && !progress.cancelled(); ++i) {
     const double then = i == 0 ? 0.7 : (done + 1) / 2; // more tries are seldom needed
     QuadCage cage = with_quads(roomy, setting, lone[i], progress.part(done, then));
     done = then;
@@ -131,13 +133,12 @@ void turn_quads(QuadCage& cage) {
 
 /// Fills in what the report says of the triangles' shapes.
 void report_shapes(TriangleView mesh, QuadReport& report) {
-  constexpr double thin = 0.15; // 2 r / R
   std::size_t count = 0;
   report.least_quality = mesh.triangles.empty() ? 0 : 1;
   for (const Triangle& t : mesh.triangles) {
     const double quality =
         triangle_quality(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
-    count += quality < thin ? 1 : 0;
+    count += quality < shape_limits::thin ? 1 : 0;
     report.least_quality = std::min(report.least_quality, quality);
   }
   report.thin = mesh.triangles.empty()

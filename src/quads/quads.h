@@ -34,14 +34,6 @@ struct QuadOptions {
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
 };
 
-/// The share of quads among the faces that make_quads() aims at.
-inline constexpr double enough_quads = 0.7;
-/// The share of thin triangles (see QuadReport) that a cage may have and still count as well
-/// shaped.
-inline constexpr double few_thin = 0.05;
-/// What the least 2 r / R of its triangles must not fall below for that.
-inline constexpr double needle = 0.03;
-
 struct Quadrangulated {
   /// Triangles and quads. Cut along any choice of diagonals it is valid, and keeps the clearance.
   /// The first diagonal of each quad is the one along which triangulate() cuts it.
@@ -51,7 +43,8 @@ struct Quadrangulated {
 };
 
 /// Makes a quad-dominant cage of a cage of triangles, with the same vertices or fewer, moved. While
-/// fewer than `enough_quads` of the faces are quads it is tried again, four times at most.
+/// fewer than shape_limits::enough_quads of the faces are quads it is tried again, four times at
+/// most.
 ///
 /// The cage is valid and keeps the clearance: so does the result, because no change is made
 /// that was not checked. It may be open if its border lies in the plane x = 0: then it is one half

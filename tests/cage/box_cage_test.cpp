@@ -17,11 +17,11 @@
 namespace cagewright {
 namespace {
 
-BoxCageOptions options_at(int depth, SlicingRule rule = SlicingRule::volume) {
-  BoxCageOptions options;
-  options.boxes.resolution = 32; // coarse, so that the tests are quick
-  options.boxes.slicing.depth = depth;
-  options.boxes.slicing.rule = rule;
+GenerateOptions options_at(int depth, SlicingRule rule = SlicingRule::volume) {
+  GenerateOptions options;
+  options.resolution = 32; // coarse, so that the tests are quick
+  options.depth = depth;
+  options.slicing = rule;
   return options;
 }
 
@@ -191,12 +191,12 @@ TEST(BoxCage, IsTheSameOnAnyNumberOfThreads) {
 
 TEST(BoxCage, JoinsPiecesUnlessAskedNotTo) {
   const TriangleMesh model = joined(make_icosphere(2), moved(make_icosphere(2), 1, {6, 0, 0}));
-  BoxCageOptions options = options_at(2);
+  GenerateOptions options = options_at(2);
   const Result<BoxCage> together = make_box_cage(model, options);
   ASSERT_TRUE(together) << together.error().message;
-  EXPECT_EQ(together->boxes.bridges, 1);
+  EXPECT_EQ(together->made->boxes.bridges, 1);
   EXPECT_EQ(topology(TriangleView(together->cage)).components, 1U);
-  options.boxes.pieces = Pieces::apart;
+  options.pieces = Pieces::apart;
   const Result<BoxCage> apart = make_box_cage(model, options);
   ASSERT_TRUE(apart) << apart.error().message;
   EXPECT_EQ(topology(TriangleView(apart->cage)).components, 2U);
@@ -211,7 +211,7 @@ TEST(BoxCage, ReportsProgressThatNeverFalls) {
     falls = falls || fraction < last;
     last = fraction;
   });
-  ASSERT_TRUE(make_box_cage(make_torus(0.25, 48, 24), options_at(4), progress));
+  ASSERT_TRUE(make_box_cage(make_torus(0.25, 48, 24), options_at(4), 0, progress));
   EXPECT_FALSE(falls);
   EXPECT_GT(last, 0.5);
   EXPECT_LE(last, 1);
@@ -225,7 +225,8 @@ TEST(BoxCage, StopsWhereverItIsAskedTo) {
         stop.request_stop();
       }
     });
-    const Result<BoxCage> made = make_box_cage(make_torus(0.25, 48, 24), options_at(4), progress);
+    const Result<BoxCage> made =
+        make_box_cage(make_torus(0.25, 48, 24), options_at(4), 0, progress);
     ASSERT_FALSE(made) << when;
     EXPECT_EQ(made.error().code, ErrorCode::cancelled);
   }
@@ -251,16 +252,16 @@ TEST(BoxCage, RefusesModelsWithoutExtent) {
 }
 
 TEST(BoxCage, RefusesOptionsOutOfRange) {
-  BoxCageOptions options;
-  options.boxes.resolution = 4;
+  GenerateOptions options;
+  options.resolution = 4;
   EXPECT_EQ(make_box_cage(make_cube(), options).error().code, ErrorCode::invalid_option);
   options = {};
-  options.boxes.slicing.depth = 99;
+  options.depth = 99;
   EXPECT_EQ(make_box_cage(make_cube(), options).error().code, ErrorCode::invalid_option);
 }
 
 TEST(BoxCage, KeepsTheHoleOfATorusOnceItIsCut) {
-  BoxCageOptions options = options_at(3);
+  GenerateOptions options = options_at(3);
   const Result<BoxCage> whole = make_box_cage(make_torus(0.2, 48, 24), options_at(0));
   const Result<BoxCage> cut = make_box_cage(make_torus(0.2, 48, 24), options);
   ASSERT_TRUE(whole && cut);

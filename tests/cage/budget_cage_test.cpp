@@ -1,10 +1,11 @@
-#include "cage/budget_cage.h"
+#include <cagewright/cage/generate.h>
 
 #include "core/random.h"
 #include "mesh/shapes.h"
 #include "mesh/topology.h"
 #include "spatial/bvh.h"
 #include "support/models.h"
+#include "support/pairing.h"
 #include "validate/greatest_gap.h"
 #include <cagewright/mesh/measures.h>
 #include <cagewright/validate/cage_metrics.h>
@@ -36,37 +37,38 @@ TriangleMesh turned(TriangleMesh mesh, double degrees, const Vec3& axis) {
   return mesh;
 }
 
-BudgetCageOptions of_vertices(int vertices) {
-  BudgetCageOptions options;
-  options.improve.vertices = vertices;
-  options.boxes.boxes.resolution = 32;
-  options.boxes.boxes.slicing.depth = 3;
+GenerateOptions of_vertices(int vertices) {
+  GenerateOptions options;
+  options.vertices = vertices;
+  options.resolution = 32;
+  options.depth = 3;
+  options.symmetry = Symmetry::off;
   return options;
 }
 
-bool is_valid(const BudgetCage& made, const TriangleMesh& model, bool pieces = false) {
+bool is_valid(const GeneratedCage& made, const TriangleMesh& model, bool pieces = false) {
   const Result<ValidityReport> report =
-      validate_cage(made.cage, model, {.allow_pieces = pieces, .first_only = true});
+      validate_cage(made.triangles, model, {.allow_pieces = pieces, .first_only = true});
   return report && report->valid();
 }
 
-double clearance_of(const BudgetCage& made, const TriangleMesh& model) {
-  return mesh_distance(TriangleBvh(made.cage), TriangleBvh(model)).distance /
+double clearance_of(const GeneratedCage& made, const TriangleMesh& model) {
+  return mesh_distance(TriangleBvh(made.triangles), TriangleBvh(model)).distance /
          diagonal(model.positions);
 }
 
 TEST(BudgetCage, KeepsTheBudgetAndTheClearanceFromBothStarts) {
   const TriangleMesh model = make_torus(0.3, 48, 24);
-  for (const CageStart start : {CageStart::envelope, CageStart::obb}) {
+  for (const Method method : {Method::envelope, Method::boxes_improved}) {
     for (const int vertices : {24, 60}) {
-      BudgetCageOptions options = of_vertices(vertices);
-      options.start = start;
-      options.improve.clearance = 0.01;
-      const Result<BudgetCage> made = make_budget_cage(model, options);
+      GenerateOptions options = of_vertices(vertices);
+      options.method = method;
+      options.clearance = 0.01;
+      const Result<GeneratedCage> made = generate(model, options);
       ASSERT_TRUE(made) << made.error().message;
       EXPECT_TRUE(is_valid(*made, model));
-      EXPECT_TRUE(made->report.reached);
-      EXPECT_LE(made->cage.positions.size(), static_cast<std::size_t>(vertices));
+      EXPECT_TRUE(made->is_as_asked());
+      EXPECT_LE(made->triangles.positions.size(), static_cast<std::size_t>(vertices));
       EXPECT_EQ(made->clearance, 0.01); // the boxes keep it too
       EXPECT_GE(clearance_of(*made, model), 0.01 * (1 - 1e-9));
     }
@@ -75,41 +77,41 @@ TEST(BudgetCage, KeepsTheBudgetAndTheClearanceFromBothStarts) {
 
 TEST(BudgetCage, KeepsABudgetOfFaces) {
   const TriangleMesh model = make_icosphere(3);
-  BudgetCageOptions options = of_vertices(0);
-  options.improve.faces = 41; // a closed surface of 41 triangles there is not, of 40 there is
-  const Result<BudgetCage> made = make_budget_cage(model, options);
+  GenerateOptions options = of_vertices(0);
+  options.faces = 41; // a closed surface of 41 triangles there is not, of 40 there is
+  const Result<GeneratedCage> made = generate(model, options);
   ASSERT_TRUE(made) << made.error().message;
-  EXPECT_LE(made->cage.triangles.size(), 41U);
-  EXPECT_GE(made->cage.triangles.size(), 30U);
+  EXPECT_LE(made->triangles.triangles.size(), 41U);
+  EXPECT_GE(made->triangles.triangles.size(), 30U);
 }
 
 TEST(BudgetCage, ThatCannotBeKeptGivesAValidCageAndSaysWhy) {
   const TriangleMesh model = make_torus(0.2, 48, 24);
-  BudgetCageOptions options = of_vertices(5); // a torus needs seven
-  options.start = CageStart::obb;             // which never fills the hole
-  const Result<BudgetCage> made = make_budget_cage(model, options);
+  GenerateOptions options = of_vertices(5); // a torus needs seven
+  options.method = Method::boxes_improved;  // which never fills the hole
+  const Result<GeneratedCage> made = generate(model, options);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_TRUE(is_valid(*made, model));
-  EXPECT_FALSE(made->report.reached);
-  EXPECT_FALSE(made->report.why_not.empty());
-  EXPECT_GE(made->cage.positions.size(), 7U);
+  EXPECT_FALSE(made->is_as_asked());
+  EXPECT_FALSE(test::first_remark(*made).empty());
+  EXPECT_GE(made->triangles.positions.size(), 7U);
 }
 
 TEST(BudgetCage, IsTheSameOnAnyNumberOfThreads) {
   const TriangleMesh torus = make_torus(0.25, 24, 12);
   const TriangleMesh pieces = joined(torus, moved(make_icosphere(1), 0.4, {3, 0, 0}));
-  BudgetCageOptions apart = of_vertices(24);
-  apart.boxes.boxes.pieces = Pieces::apart;
-  BudgetCageOptions near = of_vertices(0);
+  GenerateOptions apart = of_vertices(24);
+  apart.pieces = Pieces::apart;
+  GenerateOptions near = of_vertices(0);
   near.max_gap = 0.12;
   for (const auto& [model, options] :
        {std::pair(pieces, of_vertices(20)), std::pair(pieces, apart), std::pair(torus, near)}) {
     const auto cage_with = [&, &of = model, &how = options](int threads) {
       tbb::task_arena arena(threads);
       return arena.execute([&] {
-        Result<BudgetCage> made = make_budget_cage(of, how);
+        Result<GeneratedCage> made = generate(of, how);
         EXPECT_TRUE(made);
-        return made ? std::move(made->cage) : TriangleMesh{};
+        return made ? std::move(made->triangles) : TriangleMesh{};
       });
     };
     const TriangleMesh one = cage_with(1);
@@ -132,10 +134,10 @@ TEST(BudgetCage, StopsWhereverItIsAskedTo) {
         }
       });
       const TriangleMesh& of = gap > 0 ? one_piece : model;
-      BudgetCageOptions options = of_vertices(gap > 0 ? 0 : 24);
+      GenerateOptions options = of_vertices(gap > 0 ? 0 : 24);
       options.max_gap = gap;
-      options.boxes.boxes.pieces = when < 0.3 ? Pieces::apart : Pieces::together;
-      const Result<BudgetCage> made = make_budget_cage(of, options, progress);
+      options.pieces = when < 0.3 ? Pieces::apart : Pieces::together;
+      const Result<GeneratedCage> made = generate(of, options, progress);
       if (made) { // it was through before it was told so
         EXPECT_TRUE(is_valid(*made, of, true));
       } else {
@@ -150,12 +152,12 @@ TEST(BudgetCage, OfNearlyTheSameModelOrOptionsIsNearlyTheSame) {
   for (Vec3& p : model.positions) {
     p *= 1 + 0.1 * std::sin(7 * p.x()) * std::sin(5 * p.y()) * std::sin(6 * p.z());
   }
-  const auto judged = [](const TriangleMesh& of, const BudgetCageOptions& options) {
-    const Result<BudgetCage> made = make_budget_cage(of, options);
+  const auto judged = [](const TriangleMesh& of, const GenerateOptions& options) {
+    const Result<GeneratedCage> made = generate(of, options);
     EXPECT_TRUE(made);
-    return made ? measure_cage(made->cage, of) : CageMetrics{};
+    return made ? measure_cage(made->triangles, of) : CageMetrics{};
   };
-  const BudgetCageOptions options = of_vertices(100);
+  const GenerateOptions options = of_vertices(100);
   const CageMetrics original = judged(model, options);
 
   TriangleMesh noisy = model;
@@ -164,8 +166,8 @@ TEST(BudgetCage, OfNearlyTheSameModelOrOptionsIsNearlyTheSame) {
   for (Vec3& p : noisy.positions) {
     p += noise * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
   }
-  BudgetCageOptions further = options;
-  further.improve.clearance = 0.0021;
+  GenerateOptions further = options;
+  further.clearance = 0.0021;
   const std::array<CageMetrics, 4> others = {
       judged(noisy, options), judged(turned(model, 0.1, Vec3(1, 2, 3).normalized()), options),
       judged(model, further), judged(model, of_vertices(98))};
@@ -179,20 +181,20 @@ TEST(BudgetCage, KeepsTheGapWithAFewVerticesMoreThanItMust) {
   const TriangleMesh model = make_torus(0.3, 48, 24);
   std::size_t last = 0;
   for (const double gap : {0.08, 0.04, 0.02}) {
-    BudgetCageOptions options = of_vertices(0);
+    GenerateOptions options = of_vertices(0);
     options.max_gap = gap;
-    const Result<BudgetCage> made = make_budget_cage(model, options);
+    const Result<GeneratedCage> made = generate(model, options);
     ASSERT_TRUE(made) << made.error().message;
-    EXPECT_TRUE(made->report.reached) << made->report.why_not;
+    EXPECT_TRUE(made->is_as_asked()) << test::first_remark(*made);
     EXPECT_TRUE(is_valid(*made, model));
     const double unit = diagonal(model.positions);
-    const GreatestGap found = greatest_gap(made->cage, TriangleBvh(model), 1e-4 * unit);
+    const GreatestGap found = greatest_gap(made->triangles, TriangleBvh(model), 1e-4 * unit);
     EXPECT_LE(found.lower, gap * unit);
     ASSERT_TRUE(made->gap);
     EXPECT_LE(*made->gap, gap);
     EXPECT_GE(*made->gap, found.lower / unit * (1 - 1e-9));
-    EXPECT_GT(made->cage.positions.size(), last); // coarser where it may be
-    last = made->cage.positions.size();
+    EXPECT_GT(made->triangles.positions.size(), last); // coarser where it may be
+    last = made->triangles.positions.size();
   }
 }
 
@@ -204,14 +206,15 @@ TEST(BudgetCage, FillsHandlesThatItTriedInVainToGoRound) {
     if (!knot) {
       GTEST_SKIP() << name << " is not there";
     }
-    BudgetCageOptions options;
-    options.improve.vertices = vertices;
-    options.improve.rounds = 0;
-    const Result<BudgetCage> made = make_budget_cage(*knot, options);
+    GenerateOptions options;
+    options.symmetry = Symmetry::off;
+    options.vertices = vertices;
+    options.rounds = 0;
+    const Result<GeneratedCage> made = generate(*knot, options);
     ASSERT_TRUE(made) << made.error().message;
-    EXPECT_TRUE(made->report.reached) << made->report.why_not;
-    EXPECT_LE(made->cage.positions.size(), static_cast<std::size_t>(vertices));
-    EXPECT_TRUE(validate_cage(made->cage, *knot)->valid());
+    EXPECT_TRUE(made->is_as_asked()) << test::first_remark(*made);
+    EXPECT_LE(made->triangles.positions.size(), static_cast<std::size_t>(vertices));
+    EXPECT_TRUE(validate_cage(made->triangles, *knot)->valid());
   }
 }
 
@@ -221,49 +224,51 @@ TEST(BudgetCage, HasNoSpikesFarBeyondTheModel) {
   if (!knot) {
     GTEST_SKIP() << "knot.off is not there";
   }
-  BudgetCageOptions options;
-  options.improve.vertices = 50;
-  options.improve.rounds = 0;
-  options.resolution = 42; // whose handle is not filled
-  const Result<BudgetCage> made = make_budget_cage(*knot, options);
+  GenerateOptions options;
+  options.symmetry = Symmetry::off;
+  options.vertices = 50;
+  options.rounds = 0;
+  options.envelope_resolution = 42; // whose handle is not filled
+  const Result<GeneratedCage> made = generate(*knot, options);
   ASSERT_TRUE(made) << made.error().message;
   const Box3 model = bounding_box(TriangleView(*knot));
   const Vec3 beyond = Vec3::Constant(0.3 * model.diagonal().norm());
   EXPECT_TRUE(Box3(model.min() - beyond, model.max() + beyond)
-                  .contains(bounding_box(TriangleView(made->cage))));
+                  .contains(bounding_box(TriangleView(made->triangles))));
 }
 
 TEST(BudgetCage, HasTheVerticesAskedForWhereTheBoxesHaveFewer) {
   const TriangleMesh model = make_icosphere(3);
-  BudgetCageOptions options = of_vertices(60);
-  options.start = CageStart::obb;
-  options.boxes.boxes.slicing.depth = 0;
+  GenerateOptions options = of_vertices(60);
+  options.method = Method::boxes_improved;
+  options.depth = 0;
   for (const Symmetry symmetry : {Symmetry::off, Symmetry::x}) {
     options.symmetry = symmetry;
-    const Result<BudgetCage> made = make_budget_cage(model, options);
+    const Result<GeneratedCage> made = generate(model, options);
     ASSERT_TRUE(made) << made.error().message;
     ASSERT_LE(made->start_vertices, 16U);
-    EXPECT_GE(made->cage.positions.size(), 50U); // taking off a fin leaves a few over
-    EXPECT_LE(made->cage.positions.size(), 60U);
+    EXPECT_GE(made->triangles.positions.size(), 50U); // taking off a fin leaves a few over
+    EXPECT_LE(made->triangles.positions.size(), 60U);
     EXPECT_TRUE(is_valid(*made, model));
     const double box = 6 / std::acos(-1); // of the ball's volume
-    EXPECT_LT(signed_volume(made->cage), 0.7 * box * signed_volume(model));
+    EXPECT_LT(signed_volume(made->triangles), 0.7 * box * signed_volume(model));
   }
 }
 
 TEST(BudgetCage, SaysWhereAGapCannotBeKept) {
   const TriangleMesh model = make_torus(0.3, 48, 24);
-  BudgetCageOptions options = of_vertices(20);
+  GenerateOptions options = of_vertices(20);
   options.max_gap = 0.004;
-  const Result<BudgetCage> few = make_budget_cage(model, options);
+  const Result<GeneratedCage> few = generate(model, options);
   ASSERT_TRUE(few) << few.error().message;
   EXPECT_TRUE(is_valid(*few, model));
-  EXPECT_FALSE(few->report.reached);
-  EXPECT_NE(few->report.why_not.find("more vertices"), std::string::npos) << few->report.why_not;
-  EXPECT_LE(few->cage.positions.size(), 20U);
+  EXPECT_FALSE(few->is_as_asked());
+  EXPECT_NE(test::first_remark(*few).find("more vertices"), std::string::npos)
+      << test::first_remark(*few);
+  EXPECT_LE(few->triangles.positions.size(), 20U);
 
-  options.max_gap = options.improve.clearance;
-  const Result<BudgetCage> none = make_budget_cage(model, options);
+  options.max_gap = options.clearance;
+  const Result<GeneratedCage> none = generate(model, options);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::invalid_option);
   EXPECT_NE(none.error().message.find("clearance"), std::string::npos);
@@ -271,23 +276,24 @@ TEST(BudgetCage, SaysWhereAGapCannotBeKept) {
 
 TEST(BudgetCage, OfPiecesThatAreApartSharesTheBudgetByArea) {
   const TriangleMesh model = joined(make_icosphere(3), moved(make_icosphere(2), 0.5, {4, 0, 0}));
-  BudgetCageOptions options = of_vertices(60);
-  const Result<BudgetCage> together = make_budget_cage(model, options);
+  GenerateOptions options = of_vertices(60);
+  const Result<GeneratedCage> together = generate(model, options);
   ASSERT_TRUE(together) << together.error().message;
-  EXPECT_EQ(topology(TriangleView(together->cage)).components, 1U);
-  options.boxes.boxes.pieces = Pieces::apart;
-  for (const CageStart start : {CageStart::envelope, CageStart::obb}) {
-    options.start = start;
-    const Result<BudgetCage> apart = make_budget_cage(model, options);
+  EXPECT_EQ(topology(TriangleView(together->triangles)).components, 1U);
+  options.pieces = Pieces::apart;
+  for (const Method method : {Method::envelope, Method::boxes_improved}) {
+    options.method = method;
+    const Result<GeneratedCage> apart = generate(model, options);
     ASSERT_TRUE(apart) << apart.error().message;
-    EXPECT_EQ(topology(TriangleView(apart->cage)).components, 2U);
+    EXPECT_EQ(topology(TriangleView(apart->triangles)).components, 2U);
     EXPECT_EQ(apart->pieces, 2);
     EXPECT_EQ(apart->joined, 0);
-    EXPECT_LE(apart->cage.positions.size(), 60U);
+    EXPECT_LE(apart->triangles.positions.size(), 60U);
     EXPECT_TRUE(is_valid(*apart, model, true));
-    EXPECT_GE(clearance_of(*apart, model), options.improve.clearance * (1 - 1e-9));
-    const auto small = std::count_if(apart->cage.positions.begin(), apart->cage.positions.end(),
-                                     [](const Vec3& p) { return p.x() > 2; });
+    EXPECT_GE(clearance_of(*apart, model), options.clearance * (1 - 1e-9));
+    const auto small =
+        std::count_if(apart->triangles.positions.begin(), apart->triangles.positions.end(),
+                      [](const Vec3& p) { return p.x() > 2; });
     EXPECT_GE(small, 8); // a fifth of the area, and enough for a box
     EXPECT_LE(small, 24);
   }
@@ -295,9 +301,9 @@ TEST(BudgetCage, OfPiecesThatAreApartSharesTheBudgetByArea) {
 
 TEST(BudgetCage, OfPiecesWithinOneAnotherIsOne) {
   const TriangleMesh model = joined(make_icosphere(3), moved(make_icosphere(2), 0.3, {0, 0, 0}));
-  BudgetCageOptions options = of_vertices(40);
-  options.boxes.boxes.pieces = Pieces::apart;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
+  GenerateOptions options = of_vertices(40);
+  options.pieces = Pieces::apart;
+  const Result<GeneratedCage> made = generate(model, options);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->pieces, 1);
   EXPECT_TRUE(is_valid(*made, model));
@@ -307,12 +313,13 @@ TEST(BudgetCage, OfLinkedPiecesDoesNotCrossItself) {
   // Two links of a chain: whether their cages meet is found out by making them.
   const TriangleMesh link = make_torus(0.12, 48, 16);
   const TriangleMesh model = joined(link, moved(turned(link, 90, Vec3::UnitX()), 1, Vec3(1, 0, 0)));
-  BudgetCageOptions options = of_vertices(16);
-  options.boxes.boxes.pieces = Pieces::apart;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
+  GenerateOptions options = of_vertices(16);
+  options.pieces = Pieces::apart;
+  const Result<GeneratedCage> made = generate(model, options);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_TRUE(is_valid(*made, model, true));
-  EXPECT_EQ(static_cast<std::size_t>(made->pieces), topology(TriangleView(made->cage)).components);
+  EXPECT_EQ(static_cast<std::size_t>(made->pieces),
+            topology(TriangleView(made->triangles)).components);
   EXPECT_EQ(made->pieces + made->joined, 2);
 }
 
@@ -321,9 +328,9 @@ TEST(BudgetCage, OfMorePiecesThanTheBudgetHasRoomForJoinsThem) {
   for (int i = 1; i < 6; ++i) {
     model = joined(model, moved(make_icosphere(1), 0.3, Vec3(3.0 * i, 0, 0)));
   }
-  BudgetCageOptions options = of_vertices(20); // for two pieces at most
-  options.boxes.boxes.pieces = Pieces::apart;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
+  GenerateOptions options = of_vertices(20); // for two pieces at most
+  options.pieces = Pieces::apart;
+  const Result<GeneratedCage> made = generate(model, options);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_TRUE(is_valid(*made, model, true));
   EXPECT_LE(made->pieces, 2);
@@ -333,10 +340,10 @@ TEST(BudgetCage, OfMorePiecesThanTheBudgetHasRoomForJoinsThem) {
 TEST(BudgetCage, RefusesDensitiesOfAnotherModel) {
   const std::vector<double> density(7, 1.0);
   for (const Pieces pieces : {Pieces::together, Pieces::apart}) {
-    BudgetCageOptions options = of_vertices(20);
-    options.improve.density = density;
-    options.boxes.boxes.pieces = pieces;
-    const Result<BudgetCage> made = make_budget_cage(make_icosphere(2), options);
+    GenerateOptions options = of_vertices(20);
+    options.density = density;
+    options.pieces = pieces;
+    const Result<GeneratedCage> made = generate(make_icosphere(2), options);
     ASSERT_FALSE(made);
     EXPECT_EQ(made.error().code, ErrorCode::invalid_option);
   }

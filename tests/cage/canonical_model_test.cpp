@@ -3,6 +3,7 @@
 #include "mesh/shapes.h"
 #include "support/figures.h"
 #include "support/models.h"
+#include <cagewright/cage/generate.h>
 #include <cagewright/mesh/measures.h>
 #include <cagewright/validate/cage_metrics.h>
 #include <cagewright/validate/validate_cage.h>
@@ -79,23 +80,24 @@ TEST(CanonicalModel, HasAGridFarBelowTheClearance) {
 
 TEST(CanonicalModel, GivesCopiesTheSameCage) {
   const TriangleMesh model = figure();
-  BudgetCageOptions options;
-  options.improve.vertices = 24;
-  const Result<BudgetCage> own = make_budget_cage(model, options);
+  GenerateOptions options;
+  options.vertices = 24;
+  options.symmetry = Symmetry::off;
+  const Result<GeneratedCage> own = generate(model, options);
   ASSERT_TRUE(own) << own.error().message;
   const double scale = 0.0377;
   const Vec3 offset(0.3, -1.1, 2.7);
   for (const TriangleMesh& copy :
        {moved(model, scale, offset), shuffled(moved(model, scale, offset))}) {
-    const Result<BudgetCage> other = make_budget_cage(copy, options);
+    const Result<GeneratedCage> other = generate(copy, options);
     ASSERT_TRUE(other) << other.error().message;
-    EXPECT_EQ(other->cage.triangles, own->cage.triangles);
-    const TriangleMesh expected = moved(own->cage, scale, offset);
-    ASSERT_EQ(other->cage.positions.size(), expected.positions.size());
+    EXPECT_EQ(other->triangles.triangles, own->triangles.triangles);
+    const TriangleMesh expected = moved(own->triangles, scale, offset);
+    ASSERT_EQ(other->triangles.positions.size(), expected.positions.size());
     for (std::size_t v = 0; v < expected.positions.size(); ++v) {
-      EXPECT_LT((other->cage.positions[v] - expected.positions[v]).norm(), 1e-12);
+      EXPECT_LT((other->triangles.positions[v] - expected.positions[v]).norm(), 1e-12);
     }
-    EXPECT_EQ(other->clearance, options.improve.clearance);
+    EXPECT_EQ(other->clearance, options.clearance);
   }
 }
 
@@ -104,19 +106,19 @@ TEST(CanonicalModel, KeepsAPlaneThroughTheUsersOrigin) {
   const TriangleMesh body = test::ellipsoid({0, 0, 0}, {1, 0.6, 1.7});
   const TriangleMesh model = joined(body, test::ellipsoid({1, 0, 0}, {0.02, 0.02, 0.02}));
   ASSERT_NE(bounding_box(model.positions).center().x(), 0);
-  BudgetCageOptions options;
-  options.improve.vertices = 30;
+  GenerateOptions options;
+  options.vertices = 30;
   options.symmetry = Symmetry::automatic;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
+  const Result<GeneratedCage> made = generate(model, options);
   ASSERT_TRUE(made) << made.error().message;
   ASSERT_TRUE(made->mirror);
   EXPECT_GE(made->mirror->plane.axis(), 0);
   EXPECT_EQ(made->mirror->plane.offset, 0);
-  for (std::size_t v = 0; v < made->cage.positions.size(); ++v) {
-    Vec3 image = made->cage.positions[made->mirror->vertex_partners[v]];
+  for (std::size_t v = 0; v < made->triangles.positions.size(); ++v) {
+    Vec3 image = made->triangles.positions[made->mirror->vertex_partners[v]];
     const int axis = made->mirror->plane.axis();
     image[axis] = 0 - image[axis];
-    EXPECT_EQ(made->cage.positions[v], image);
+    EXPECT_EQ(made->triangles.positions[v], image);
   }
 }
 
@@ -125,13 +127,14 @@ TEST(StartOfACage, IsChosenByWhatBecomesOfIt) {
   if (!camel) {
     GTEST_SKIP() << "needs the packaged models";
   }
-  BudgetCageOptions options;
-  options.improve.vertices = 100;
-  const Result<BudgetCage> made = make_budget_cage(*camel, options);
+  GenerateOptions options;
+  options.vertices = 100;
+  options.symmetry = Symmetry::off;
+  const Result<GeneratedCage> made = generate(*camel, options);
   ASSERT_TRUE(made) << made.error().message;
   // From the start that the number of vertices suggests a third of the space between the legs is
   // inside.
-  EXPECT_LT(measure_cage(made->cage, *camel).webbing, 0.2);
+  EXPECT_LT(measure_cage(made->triangles, *camel).webbing, 0.2);
 }
 
 } // namespace

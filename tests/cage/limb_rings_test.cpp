@@ -1,12 +1,12 @@
 #include "cage/limb_rings.h"
 
-#include "cage/budget_cage.h"
 #include "envelope/envelope.h"
 #include "mesh/edge_chains.h"
 #include "mesh/shapes.h"
 #include "support/figures.h"
 #include "support/models.h"
 #include "support/quads.h"
+#include <cagewright/cage/generate.h>
 #include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
@@ -153,9 +153,8 @@ TEST(LimbCuts, AreNoneOfNothing) {
 }
 
 /// Every ring is a closed loop of edges that parts the faces into two.
-void expect_rings_that_separate(const BudgetCage& made) {
-  ASSERT_TRUE(made.polygons);
-  const PolygonMesh& cage = *made.polygons;
+void expect_rings_that_separate(const GeneratedCage& made) {
+  const PolygonMesh& cage = made.faces;
   std::map<std::array<Index, 2>, std::size_t> face_left_of;
   for (std::size_t f = 0; f < cage.face_count(); ++f) {
     const std::span<const Index> face = cage.face(f);
@@ -200,15 +199,15 @@ TriangleMesh raised(TriangleMesh figure) {
 TEST(CageOfQuads, HasRingsRoundTheArmsOfAFigure) {
   const TriangleMesh model = raised(figure());
   for (const Symmetry symmetry : {Symmetry::off, Symmetry::x}) {
-    BudgetCageOptions options = quads_of(70);
+    GenerateOptions options = quads_of(70);
     options.symmetry = symmetry;
-    const Result<BudgetCage> made = make_budget_cage(model, options);
+    const Result<GeneratedCage> made = generate(model, options);
     ASSERT_TRUE(made);
-    EXPECT_TRUE(made->report.reached);
+    EXPECT_TRUE(made->is_as_asked());
     expect_rings_that_separate(*made);
     const auto is_round_arm = [&](const std::vector<Index>& ring, double side) {
       return std::all_of(ring.begin(), ring.end(), [&](Index v) {
-        const double x = side * made->polygons->positions[v].x();
+        const double x = side * made->faces.positions[v].x();
         return x > 0.7 * body_end && x < 2 * body_end;
       });
     };
@@ -217,7 +216,7 @@ TEST(CageOfQuads, HasRingsRoundTheArmsOfAFigure) {
           std::any_of(made->limb_rings.begin(), made->limb_rings.end(),
                       [&](const std::vector<Index>& ring) { return is_round_arm(ring, side); }));
     }
-    const Result<ValidityReport> report = validate_cage(*made->polygons, model);
+    const Result<ValidityReport> report = validate_cage(made->faces, model);
     EXPECT_TRUE(report && report->valid());
   }
 }
@@ -227,9 +226,9 @@ TEST(CageOfQuads, HasRingsRoundTheLegsAndTheNeckOfACow) {
   if (!model) {
     GTEST_SKIP() << "no such model in CAGEWRIGHT_MODELS";
   }
-  BudgetCageOptions options = quads_of(100);
+  GenerateOptions options = quads_of(100);
   options.symmetry = Symmetry::automatic;
-  const Result<BudgetCage> made = make_budget_cage(*model, options);
+  const Result<GeneratedCage> made = generate(*model, options);
   ASSERT_TRUE(made);
   EXPECT_GE(made->limb_rings.size(), 5U);
   expect_rings_that_separate(*made);

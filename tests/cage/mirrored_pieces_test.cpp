@@ -1,10 +1,10 @@
-#include "cage/budget_cage.h"
 #include "mesh/shapes.h"
 #include "mesh/topology.h"
 #include "spatial/bvh.h"
 #include "support/figures.h"
 #include "support/pairing.h"
 #include "validate/greatest_gap.h"
+#include <cagewright/cage/generate.h>
 #include <cagewright/mesh/measures.h>
 #include <cagewright/validate/validate_cage.h>
 
@@ -33,43 +33,41 @@ TriangleMesh pair_of_balls(double more = 0) {
                 ellipsoid({-1, 0, 0}, {0.4, 0.4, 0.4}));
 }
 
-BudgetCageOptions options(int vertices, Symmetry symmetry = Symmetry::automatic) {
-  BudgetCageOptions result;
-  result.improve.vertices = vertices;
-  result.improve.rounds = 1;
-  result.boxes.boxes.pieces = Pieces::apart;
-  result.boxes.boxes.resolution = 32;
+GenerateOptions options(int vertices, Symmetry symmetry = Symmetry::automatic) {
+  GenerateOptions result;
+  result.vertices = vertices;
+  result.rounds = 1;
+  result.pieces = Pieces::apart;
+  result.resolution = 32;
   result.symmetry = symmetry;
   return result;
 }
 
-void expect_valid(const BudgetCage& made, const TriangleMesh& model) {
+void expect_valid(const GeneratedCage& made, const TriangleMesh& model) {
   const ValidateOptions in_pieces{.allow_pieces = true, .first_only = true};
-  const Result<ValidityReport> report = made.polygons
-                                            ? validate_cage(*made.polygons, model, in_pieces)
-                                            : validate_cage(made.cage, model, in_pieces);
+  const Result<ValidityReport> report = validate_cage(made.faces, model, in_pieces);
   ASSERT_TRUE(report);
   EXPECT_TRUE(report->valid());
-  EXPECT_GE(mesh_distance(TriangleBvh(made.cage), TriangleBvh(model)).distance,
+  EXPECT_GE(mesh_distance(TriangleBvh(made.triangles), TriangleBvh(model)).distance,
             (1 - 1e-9) * made.clearance * diagonal(model.positions));
 }
 
 TEST(MirroredPieces, ArePairedExactlyWithinTheBudget) {
   const TriangleMesh model = balls();
-  for (const CageStart start : {CageStart::envelope, CageStart::obb}) {
+  for (const Method method : {Method::envelope, Method::boxes_improved}) {
     for (const bool quads : {false, true}) {
-      BudgetCageOptions wanted = options(55);
-      wanted.start = start;
+      GenerateOptions wanted = options(55);
+      wanted.method = method;
       wanted.quads = quads;
-      const Result<BudgetCage> made = make_budget_cage(model, wanted);
+      const Result<GeneratedCage> made = generate(model, wanted);
       ASSERT_TRUE(made) << made.error().message;
-      EXPECT_TRUE(made->report.reached) << made->report.why_not;
-      EXPECT_LE(made->cage.positions.size(), 55U);
+      EXPECT_TRUE(made->is_as_asked()) << test::first_remark(*made);
+      EXPECT_LE(made->triangles.positions.size(), 55U);
       EXPECT_EQ(made->pieces, 3);
       EXPECT_EQ(made->joined, 0);
-      EXPECT_EQ(topology(TriangleView(made->cage)).components, 3U);
+      EXPECT_EQ(topology(TriangleView(made->triangles)).components, 3U);
       EXPECT_NEAR(made->mirror->plane.offset, 2, 1e-9);
-      EXPECT_EQ(made->clearance, wanted.improve.clearance);
+      EXPECT_EQ(made->clearance, wanted.clearance);
       expect_valid(*made, model);
       expect_paired_exactly(*made);
     }
@@ -83,9 +81,9 @@ TEST(MirroredPieces, HaveTheirLimbRingsOnBothSides) {
     model = joined(model, joined(ellipsoid({3 * side, 0, 0}, {0.8, 0.8, 0.8}),
                                  ellipsoid({3 * side, 0, 1.6}, {0.25, 0.25, 1.4})));
   }
-  BudgetCageOptions wanted = options(120);
+  GenerateOptions wanted = options(120);
   wanted.quads = true;
-  const Result<BudgetCage> made = make_budget_cage(model, wanted);
+  const Result<GeneratedCage> made = generate(model, wanted);
   ASSERT_TRUE(made) << made.error().message;
   expect_paired_exactly(*made);
   expect_valid(*made, model);
@@ -96,7 +94,7 @@ TEST(MirroredPieces, HaveTheirLimbRingsOnBothSides) {
   for (const std::set<Index>& ring : rings) {
     std::set<Index> image;
     for (const Index v : ring) {
-      ASSERT_LT(v, made->cage.positions.size());
+      ASSERT_LT(v, made->triangles.positions.size());
       image.insert(made->mirror->vertex_partners[v]);
     }
     EXPECT_TRUE(rings.contains(image));
@@ -108,10 +106,10 @@ TEST(MirroredPieces, ShareACageWhereTheirSidesAreTooNear) {
     TriangleMesh model = joined(ellipsoid({0.4 + gap / 2, 0, 0}, {0.4, 0.4, 0.4}),
                                 ellipsoid({-0.4 - gap / 2, 0, 0}, {0.4, 0.4, 0.4}));
     model = joined(model, ellipsoid({0, 2, 0}, {0.3, 0.3, 0.3}));
-    const Result<BudgetCage> made = make_budget_cage(model, options(60));
+    const Result<GeneratedCage> made = generate(model, options(60));
     ASSERT_TRUE(made) << made.error().message;
     EXPECT_EQ(static_cast<std::size_t>(made->pieces),
-              topology(TriangleView(made->cage)).components);
+              topology(TriangleView(made->triangles)).components);
     EXPECT_GE(made->pieces, 2);
     expect_valid(*made, model);
     expect_paired_exactly(*made);
@@ -120,11 +118,11 @@ TEST(MirroredPieces, ShareACageWhereTheirSidesAreTooNear) {
 
 TEST(MirroredPieces, EncloseAModelThatIsNotItsOwnMirrorImage) {
   const TriangleMesh model = pair_of_balls(0.3);
-  const Result<BudgetCage> as_it_is = make_budget_cage(model, options(40));
+  const Result<GeneratedCage> as_it_is = generate(model, options(40));
   ASSERT_TRUE(as_it_is) << as_it_is.error().message;
   EXPECT_EQ(as_it_is->pieces, 2);
   for (const Symmetry symmetry : {Symmetry::x, Symmetry::y}) {
-    const Result<BudgetCage> made = make_budget_cage(model, options(40, symmetry));
+    const Result<GeneratedCage> made = generate(model, options(40, symmetry));
     ASSERT_TRUE(made) << made.error().message;
     EXPECT_EQ(made->pieces, 2);
     EXPECT_EQ(made->mirror->plane.axis(), symmetry == Symmetry::x ? 0 : 1);
@@ -135,23 +133,23 @@ TEST(MirroredPieces, EncloseAModelThatIsNotItsOwnMirrorImage) {
 
 TEST(MirroredPieces, KeepNearTheModelItself) {
   const TriangleMesh model = pair_of_balls(0.05); // on one side only
-  BudgetCageOptions wanted = options(0, Symmetry::x);
+  GenerateOptions wanted = options(0, Symmetry::x);
   wanted.max_gap = 0.06;
-  const Result<BudgetCage> made = make_budget_cage(model, wanted);
+  const Result<GeneratedCage> made = generate(model, wanted);
   ASSERT_TRUE(made) << made.error().message;
-  EXPECT_TRUE(made->report.reached) << made->report.why_not;
+  EXPECT_TRUE(made->is_as_asked()) << test::first_remark(*made);
   ASSERT_TRUE(made->gap);
   EXPECT_LE(*made->gap, 0.06);
   const double size = diagonal(model.positions);
-  const GreatestGap gap = greatest_gap(made->cage, TriangleBvh(model), 1e-4 * size);
+  const GreatestGap gap = greatest_gap(made->triangles, TriangleBvh(model), 1e-4 * size);
   EXPECT_LE(gap.lower, *made->gap * size);
   expect_paired_exactly(*made);
 
   wanted.max_gap = 0.01; // less than what one side has and the other has not
-  const Result<BudgetCage> farther = make_budget_cage(model, wanted);
+  const Result<GeneratedCage> farther = generate(model, wanted);
   ASSERT_TRUE(farther) << farther.error().message;
-  EXPECT_FALSE(farther->report.reached);
-  EXPECT_FALSE(farther->report.why_not.empty());
+  EXPECT_FALSE(farther->is_as_asked());
+  EXPECT_FALSE(test::first_remark(*farther).empty());
   EXPECT_GT(*farther->gap, 0.01);
   expect_valid(*farther, model);
 }
@@ -162,14 +160,14 @@ TEST(MirroredPieces, AreFinerWhereADensitySaysSoOnBothSides) {
   for (const Vec3& p : model.positions) {
     density.push_back(p.x() > 2.5 && p.z() > 0 ? 30 : 1);
   }
-  BudgetCageOptions wanted = options(90, Symmetry::x);
-  wanted.improve.density = density;
-  const Result<BudgetCage> made = make_budget_cage(model, wanted);
+  GenerateOptions wanted = options(90, Symmetry::x);
+  wanted.density = density;
+  const Result<GeneratedCage> made = generate(model, wanted);
   ASSERT_TRUE(made) << made.error().message;
   expect_paired_exactly(*made);
   expect_valid(*made, model);
   const auto count = [&](double sign) {
-    return std::count_if(made->cage.positions.begin(), made->cage.positions.end(),
+    return std::count_if(made->triangles.positions.begin(), made->triangles.positions.end(),
                          [&](const Vec3& p) { return p.x() > 2.5 && sign * p.z() > 0; });
   };
   EXPECT_GT(count(1), count(-1));

@@ -1,4 +1,4 @@
-#include "cage/budget_cage.h"
+#include "mesh/shape_limits.h"
 #include "mesh/shapes.h"
 #include "spatial/bvh.h"
 #include "support/figures.h"
@@ -6,6 +6,7 @@
 #include "support/pairing.h"
 #include "support/quads.h"
 #include "validate/greatest_gap.h"
+#include <cagewright/cage/generate.h>
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/validate_cage.h>
@@ -31,13 +32,13 @@ TriangleMesh figure() {
 
 TEST(QuadCageWithinABudget, IsPairedExactlyWhenMirrored) {
   const TriangleMesh model = figure();
-  BudgetCageOptions options = quads_of(40);
+  GenerateOptions options = quads_of(40);
   options.symmetry = Symmetry::automatic;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
-  ASSERT_TRUE(made && made->mirror && made->polygons);
-  EXPECT_LE(made->polygons->positions.size(), 40U);
+  const Result<GeneratedCage> made = generate(model, options);
+  ASSERT_TRUE(made && made->mirror);
+  EXPECT_LE(made->faces.positions.size(), 40U);
   test::expect_paired_exactly(*made);
-  EXPECT_TRUE(validate_cage(*made->polygons, model)->valid());
+  EXPECT_TRUE(validate_cage(made->faces, model)->valid());
 }
 
 // A ring round the rod between them lies beside the plane that the rod crosses: no vertex of the
@@ -46,26 +47,26 @@ TEST(QuadCageWithinABudget, IsMirroredThoughARingLiesNearThePlane) {
   const TriangleMesh model =
       joined(ellipsoid({1, 0, 0}, {0.4, 0.4, 0.4}), ellipsoid({-1, 0, 0}, {0.4, 0.4, 0.4}));
   for (const int vertices : {50, 60}) {
-    BudgetCageOptions options;
+    GenerateOptions options;
     options.quads = true;
-    options.improve.vertices = vertices;
+    options.vertices = vertices;
     options.symmetry = Symmetry::automatic;
-    const Result<BudgetCage> made = make_budget_cage(model, options);
-    ASSERT_TRUE(made && made->polygons);
-    EXPECT_TRUE(made->mirror) << made->why_not_mirrored;
-    EXPECT_TRUE(validate_cage(*made->polygons, model)->valid());
+    const Result<GeneratedCage> made = generate(model, options);
+    ASSERT_TRUE(made);
+    EXPECT_TRUE(made->mirror) << test::first_remark(*made);
+    EXPECT_TRUE(validate_cage(made->faces, model)->valid());
   }
 }
 
 TEST(QuadCageWithinABudget, CountsAQuadAsOneFace) {
   const TriangleMesh model = figure();
-  BudgetCageOptions options = quads_of(0);
-  options.improve.faces = 40;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
-  ASSERT_TRUE(made && made->polygons);
-  EXPECT_TRUE(made->report.reached) << made->report.why_not;
-  EXPECT_LE(made->polygons->face_count(), 40U);
-  EXPECT_GT(made->cage.triangles.size(), 40U);
+  GenerateOptions options = quads_of(0);
+  options.faces = 40;
+  const Result<GeneratedCage> made = generate(model, options);
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->is_as_asked()) << test::first_remark(*made);
+  EXPECT_LE(made->faces.face_count(), 40U);
+  EXPECT_GT(made->triangles.triangles.size(), 40U);
 }
 
 // Three of its vertices are of no face and far away. What reaches out to them is thin, or left in
@@ -75,56 +76,55 @@ TEST(QuadCageWithinABudget, IsTriedAgainWithMoreWeightOnShape) {
   if (!model) {
     GTEST_SKIP() << "prim.off is not there";
   }
-  BudgetCageOptions options;
+  GenerateOptions options;
   options.quads = true;
-  options.improve.vertices = 32;
+  options.vertices = 32;
   options.symmetry = Symmetry::automatic;
-  const Result<BudgetCage> made = make_budget_cage(*model, options);
-  ASSERT_TRUE(made && made->quads && made->polygons);
-  EXPECT_LE(made->polygons->positions.size(), 32U);
+  const Result<GeneratedCage> made = generate(*model, options);
+  ASSERT_TRUE(made && made->quads);
+  EXPECT_LE(made->faces.positions.size(), 32U);
   EXPECT_GE(made->quads->share, 0.45);
-  EXPECT_LE(made->quads->thin, few_thin);
-  EXPECT_TRUE(validate_cage(*made->polygons, *model)->valid());
+  EXPECT_LE(made->quads->thin, shape_limits::few_thin);
+  EXPECT_TRUE(validate_cage(made->faces, *model)->valid());
 }
 
 TEST(QuadCageWithinABudget, MayBeInPieces) {
   TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.5, 0.5});
   model = joined(model, ellipsoid({0, 2, 0}, {1, 0.5, 0.5}));
-  BudgetCageOptions options = quads_of(40);
-  options.boxes.boxes.pieces = Pieces::apart;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
-  ASSERT_TRUE(made && made->polygons);
+  GenerateOptions options = quads_of(40);
+  options.pieces = Pieces::apart;
+  const Result<GeneratedCage> made = generate(model, options);
+  ASSERT_TRUE(made);
   EXPECT_EQ(made->pieces, 2);
-  EXPECT_LE(made->polygons->positions.size(), 40U);
+  EXPECT_LE(made->faces.positions.size(), 40U);
   EXPECT_GT(made->quads->share, 0.5);
-  const Result<ValidityReport> report =
-      validate_cage(*made->polygons, model, {.allow_pieces = true});
+  const Result<ValidityReport> report = validate_cage(made->faces, model, {.allow_pieces = true});
   EXPECT_TRUE(report && report->valid());
 }
 
 TEST(QuadCageWithinABudget, KeepsAGreatestGapWhenMirrored) {
   const TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.6, 0.6});
-  BudgetCageOptions options = quads_of(0);
+  GenerateOptions options = quads_of(0);
   options.max_gap = 0.1;
   options.symmetry = Symmetry::x;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
-  ASSERT_TRUE(made && made->polygons && made->gap && made->mirror);
-  EXPECT_TRUE(made->report.reached);
+  const Result<GeneratedCage> made = generate(model, options);
+  ASSERT_TRUE(made && made->gap && made->mirror);
+  EXPECT_TRUE(made->is_as_asked());
   EXPECT_LE(*made->gap, 0.1);
   const double diag = diagonal(model.positions);
-  const GreatestGap gap = greatest_gap(made->cage, TriangleBvh(model), 1e-4 * diag);
+  const GreatestGap gap = greatest_gap(made->triangles, TriangleBvh(model), 1e-4 * diag);
   EXPECT_LE(gap.lower, *made->gap * diag);
   EXPECT_GT(made->quads->share, 0.5);
-  const Result<ValidityReport> report = validate_cage(*made->polygons, model);
+  const Result<ValidityReport> report = validate_cage(made->faces, model);
   EXPECT_TRUE(report && report->valid());
 }
 
 TEST(QuadCageWithinABudget, KeepsAGreatestGap) {
   const TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.6, 0.6});
-  BudgetCageOptions options = quads_of(0);
+  GenerateOptions options = quads_of(0);
   options.max_gap = 0.1;
-  const Result<BudgetCage> made = make_budget_cage(model, options);
-  ASSERT_TRUE(made && made->polygons && made->gap);
+  const Result<GeneratedCage> made = generate(model, options);
+  ASSERT_TRUE(made && made->gap);
   EXPECT_LE(*made->gap, 0.1);
 }
 

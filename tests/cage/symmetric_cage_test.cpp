@@ -1,4 +1,4 @@
-#include "cage/budget_cage.h"
+#include <cagewright/cage/generate.h>
 
 #include "mesh/shapes.h"
 #include "spatial/bvh.h"
@@ -36,27 +36,27 @@ TriangleMesh moved(TriangleMesh mesh, const Mat3& turn, const Vec3& offset) {
   return mesh;
 }
 
-BudgetCageOptions options(int vertices, Symmetry symmetry) {
-  BudgetCageOptions result;
-  result.improve.vertices = vertices;
-  result.improve.rounds = 1;
+GenerateOptions options(int vertices, Symmetry symmetry) {
+  GenerateOptions result;
+  result.vertices = vertices;
+  result.rounds = 1;
   result.symmetry = symmetry;
   return result;
 }
 
 TEST(SymmetricCage, IsValidWithinTheBudgetClearAndPairedExactly) {
   const TriangleMesh model = moved(figure(), Mat3(Mat3::Identity()), {0.3, 0, 0});
-  for (const CageStart start : {CageStart::envelope, CageStart::obb}) {
+  for (const Method method : {Method::envelope, Method::boxes_improved}) {
     for (const int vertices : {40, 61}) {
-      BudgetCageOptions wanted = options(vertices, Symmetry::automatic);
-      wanted.start = start;
-      const Result<BudgetCage> made = make_budget_cage(model, wanted);
+      GenerateOptions wanted = options(vertices, Symmetry::automatic);
+      wanted.method = method;
+      const Result<GeneratedCage> made = generate(model, wanted);
       ASSERT_TRUE(made) << made.error().message;
-      EXPECT_TRUE(made->report.reached);
-      EXPECT_EQ(made->why_not_boxes, "");
-      EXPECT_LE(made->cage.positions.size(), static_cast<std::size_t>(vertices));
-      EXPECT_TRUE(validate_cage(made->cage, model)->valid());
-      EXPECT_GE(mesh_distance(TriangleBvh(made->cage), TriangleBvh(model)).distance,
+      EXPECT_TRUE(made->is_as_asked());
+      EXPECT_EQ(test::first_remark(*made), "");
+      EXPECT_LE(made->triangles.positions.size(), static_cast<std::size_t>(vertices));
+      EXPECT_TRUE(validate_cage(made->triangles, model)->valid());
+      EXPECT_GE(mesh_distance(TriangleBvh(made->triangles), TriangleBvh(model)).distance,
                 (1 - 1e-9) * made->clearance * diagonal(model.positions));
       expect_paired_exactly(*made);
       EXPECT_NEAR(made->mirror->plane.offset, 0.3, 1e-9);
@@ -67,39 +67,39 @@ TEST(SymmetricCage, IsValidWithinTheBudgetClearAndPairedExactly) {
 TEST(SymmetricCage, OfAModelThatIsNotSymmetricEnclosesItAllTheSame) {
   const TriangleMesh model = figure(1);
   for (const Symmetry symmetry : {Symmetry::x, Symmetry::y, Symmetry::z}) {
-    const Result<BudgetCage> made = make_budget_cage(model, options(60, symmetry));
+    const Result<GeneratedCage> made = generate(model, options(60, symmetry));
     ASSERT_TRUE(made) << made.error().message;
-    EXPECT_TRUE(validate_cage(made->cage, model)->valid());
+    EXPECT_TRUE(validate_cage(made->triangles, model)->valid());
     expect_paired_exactly(*made);
   }
 }
 
 TEST(SymmetricCage, IsNotMadeOfAModelThatIsNot) {
-  const Result<BudgetCage> made = make_budget_cage(figure(1), options(40, Symmetry::automatic));
+  const Result<GeneratedCage> made = generate(figure(1), options(40, Symmetry::automatic));
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_FALSE(made->mirror);
-  EXPECT_NE(made->why_not_mirrored, "");
-  const Result<BudgetCage> off = make_budget_cage(figure(), options(40, Symmetry::off));
+  EXPECT_NE(test::first_remark(*made), "");
+  const Result<GeneratedCage> off = generate(figure(), options(40, Symmetry::off));
   EXPECT_FALSE(off->mirror);
-  EXPECT_EQ(off->why_not_mirrored, "");
+  EXPECT_EQ(test::first_remark(*off), "");
 }
 
 TEST(SymmetricCage, StaysWithinAGapOfTheModelAndNotOnlyOfItsMirrorImage) {
   // The lower arm's image is where the model has nothing.
   for (const double lower : {0.0, 1.2}) {
     const TriangleMesh model = figure(lower);
-    BudgetCageOptions wanted = options(60, Symmetry::x);
+    GenerateOptions wanted = options(60, Symmetry::x);
     wanted.max_gap = 0.1;
-    const Result<BudgetCage> made = make_budget_cage(model, wanted);
+    const Result<GeneratedCage> made = generate(model, wanted);
     ASSERT_TRUE(made) << made.error().message;
-    EXPECT_TRUE(validate_cage(made->cage, model)->valid());
+    EXPECT_TRUE(validate_cage(made->triangles, model)->valid());
     expect_paired_exactly(*made);
     const double diag = diagonal(model.positions);
-    const GreatestGap gap = greatest_gap(made->cage, TriangleBvh(model), 1e-4 * diag);
+    const GreatestGap gap = greatest_gap(made->triangles, TriangleBvh(model), 1e-4 * diag);
     EXPECT_LE(gap.lower, *made->gap * diag);
     EXPECT_GE(gap.upper, 0.99 * *made->gap * diag);
-    EXPECT_EQ(made->report.reached, *made->gap <= wanted.max_gap);
-    EXPECT_EQ(made->report.reached, lower == 0) << *made->gap;
+    EXPECT_EQ(made->is_as_asked(), *made->gap <= wanted.max_gap);
+    EXPECT_EQ(made->is_as_asked(), lower == 0) << *made->gap;
   }
 }
 
@@ -107,24 +107,24 @@ TEST(SymmetricCage, InAnyPlaneIsPairedToRounding) {
   const TriangleMesh model =
       moved(figure(), Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix(),
             {10, 20, 30});
-  const Result<BudgetCage> made = make_budget_cage(model, options(50, Symmetry::automatic));
+  const Result<GeneratedCage> made = generate(model, options(50, Symmetry::automatic));
   ASSERT_TRUE(made) << made.error().message;
-  EXPECT_TRUE(validate_cage(made->cage, model)->valid());
+  EXPECT_TRUE(validate_cage(made->triangles, model)->valid());
   ASSERT_TRUE(made->mirror);
   EXPECT_LT(made->mirror->error, 1e-13);
-  for (Index v = 0; v < made->cage.positions.size(); ++v) {
-    const Vec3& image = made->cage.positions[made->mirror->vertex_partners[v]];
-    EXPECT_LT((made->mirror->plane.mirrored(made->cage.positions[v]) - image).norm(), 1e-13);
+  for (Index v = 0; v < made->triangles.positions.size(); ++v) {
+    const Vec3& image = made->triangles.positions[made->mirror->vertex_partners[v]];
+    EXPECT_LT((made->mirror->plane.mirrored(made->triangles.positions[v]) - image).norm(), 1e-13);
   }
 }
 
 TEST(SymmetricCage, IsTheSameOnOneThreadAsOnMany) {
   const TriangleMesh model = figure();
-  const Result<BudgetCage> many = make_budget_cage(model, options(30, Symmetry::automatic));
+  const Result<GeneratedCage> many = generate(model, options(30, Symmetry::automatic));
   tbb::task_arena(1).execute([&] {
-    const Result<BudgetCage> one = make_budget_cage(model, options(30, Symmetry::automatic));
-    EXPECT_EQ(one->cage.positions, many->cage.positions);
-    EXPECT_EQ(one->cage.triangles, many->cage.triangles);
+    const Result<GeneratedCage> one = generate(model, options(30, Symmetry::automatic));
+    EXPECT_EQ(one->triangles.positions, many->triangles.positions);
+    EXPECT_EQ(one->triangles.triangles, many->triangles.triangles);
   });
 }
 

@@ -142,7 +142,7 @@ struct RealModel {
   const char* name;
   std::vector<std::string> files;
   int vertices;
-  double share = enough_quads; // at least
+  double share = shape_limits::enough_quads; // at least
 };
 
 void PrintTo(const RealModel& model, std::ostream* out) {

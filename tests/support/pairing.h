@@ -2,15 +2,21 @@
 /// What is claimed of cages that are their own mirror images.
 #pragma once
 
-#include "cage/budget_cage.h"
+#include <cagewright/cage/generate.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace cagewright::test {
+
+/// What is not as it was asked for or might be expected: the first of it, or nothing.
+inline std::string first_remark(const GeneratedCage& made) {
+  return made.remarks.empty() ? std::string() : made.remarks.front().message;
+}
 
 /// The corners of a face, begun at the least.
 inline std::vector<Index> key(std::span<const Index> face) {
@@ -19,18 +25,14 @@ inline std::vector<Index> key(std::span<const Index> face) {
   return corners;
 }
 
-inline std::span<const Index> face_of(const BudgetCage& made, Index f) {
-  return made.polygons ? made.polygons->face(f) : std::span<const Index>(made.cage.triangles[f]);
-}
-
 /// Every vertex and every face has its partner, across one of the world's axes, without rounding.
-inline void expect_paired_exactly(const BudgetCage& made) {
-  ASSERT_TRUE(made.mirror) << made.why_not_mirrored;
+inline void expect_paired_exactly(const GeneratedCage& made) {
+  ASSERT_TRUE(made.mirror) << first_remark(made);
   const MirrorPairing& mirror = *made.mirror;
   const int axis = mirror.plane.axis();
   ASSERT_GE(axis, 0);
   EXPECT_EQ(mirror.error, 0);
-  const std::vector<Vec3>& at = made.cage.positions;
+  const std::vector<Vec3>& at = made.triangles.positions;
   ASSERT_EQ(mirror.vertex_partners.size(), at.size());
   for (Index v = 0; v < at.size(); ++v) {
     const Index partner = mirror.vertex_partners[v];
@@ -42,14 +44,13 @@ inline void expect_paired_exactly(const BudgetCage& made) {
     EXPECT_EQ(partner == v, at[v][axis] == mirror.plane.offset);
     EXPECT_EQ(mirror.vertex_partners[partner], v);
   }
-  ASSERT_EQ(mirror.face_partners.size(),
-            made.polygons ? made.polygons->face_count() : made.cage.triangles.size());
+  ASSERT_EQ(mirror.face_partners.size(), made.faces.face_count());
   for (Index f = 0; f < mirror.face_partners.size(); ++f) {
     std::vector<Index> image;
-    for (const Index v : face_of(made, f)) {
+    for (const Index v : made.faces.face(f)) {
       image.insert(image.begin(), mirror.vertex_partners[v]);
     }
-    EXPECT_EQ(key(image), key(face_of(made, mirror.face_partners[f])));
+    EXPECT_EQ(key(image), key(made.faces.face(mirror.face_partners[f])));
     EXPECT_NE(mirror.face_partners[f], f);
   }
 }

@@ -2,16 +2,17 @@
 /// Options for cages of quads that are made quickly.
 #pragma once
 
-#include "cage/budget_cage.h"
+#include <cagewright/cage/generate.h>
 
 namespace cagewright::test {
 
 /// At most so many vertices (0: no limit), not refined.
-inline BudgetCageOptions quads_of(int vertices) {
-  BudgetCageOptions options;
-  options.improve.vertices = vertices;
-  options.improve.rounds = 0;
+inline GenerateOptions quads_of(int vertices) {
+  GenerateOptions options;
+  options.vertices = vertices;
+  options.rounds = 0;
   options.quads = true;
+  options.symmetry = Symmetry::off;
   return options;
 }
 

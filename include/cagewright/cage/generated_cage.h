@@ -44,6 +44,7 @@ struct Remark {
   Reason reason = Reason::budget_not_reached;
   std::string message;       ///< a sentence for a person, without a full stop
   bool is_shortfall = false; ///< the options asked for it: otherwise it is only told
+  std::optional<Vec3> place; ///< where it is, if it is somewhere: in the model's coordinates
 };
 
 /// A box of the union, in the model's coordinates.

@@ -1,9 +1,18 @@
-#include "cage/budget_pieces.h"
+#include "cage/piece_cages.h"
 
+#include "cage/budget.h"
+#include "cage/not_valid.h"
+#include "cage/part_maker.h"
 #include "cage/part_options.h"
+#include "cage/pieces.h"
+#include "cage/quad_cuts.h"
 #include "cage/unit_frame.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/shapes.h"
+#include "quads/quads.h"
+#include "symmetry/half.h"
 #include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/validate_cage.h>
 
 #include <algorithm>
@@ -17,6 +26,7 @@
 namespace cagewright {
 namespace {
 
+constexpr int voxels_for_pieces = 96;     // along the longest edge, to tell which pieces are apart
 constexpr double largest_clearance = 0.2; // of a piece's own diagonal: smaller pieces join others
 
 /// The budget of a model, shared out by surface area, `least` for each of a part's surfaces.
@@ -54,15 +64,15 @@ std::size_t nearest_group(std::size_t g, const std::vector<Box3>& boxes) {
 
 /// Joins groups to the nearest other one until each can have a cage of its own: a surface of some
 /// extent, larger than the clearance, and vertices enough.
-PieceGroups fit_for_cages(TriangleView model, PieceGroups groups, const BudgetCageOptions& options,
-                          const PieceMaker& maker) {
-  const double clearance = options.improve.clearance * diagonal(model.positions);
+PieceGroups fit_for_cages(TriangleView model, PieceGroups groups, const GenerateOptions& options,
+                          const PartMaker& maker) {
+  const double clearance = options.clearance * diagonal(model.positions);
   int most = std::numeric_limits<int>::max();
-  if (options.improve.vertices > 0) {
-    most = options.improve.vertices / vertices_for_a_piece;
+  if (vertex_limit(options) > 0) {
+    most = vertex_limit(options) / vertices_for_a_piece;
   }
-  if (options.improve.faces > 0) {
-    most = std::min(most, options.improve.faces / faces_for_a_piece);
+  if (options.faces > 0) {
+    most = std::min(most, options.faces / faces_for_a_piece);
   }
   while (groups.count > 1) {
     const std::vector<ModelPart> parts = parts_of(model, groups);
@@ -97,28 +107,10 @@ PieceGroups fit_for_cages(TriangleView model, PieceGroups groups, const BudgetCa
   return groups;
 }
 
-/// The triangles that the cage may be cut into: along the first diagonals of its quads, and along
-/// the others.
-std::vector<TriangleMesh> cuts(const BudgetCage& cage) {
-  std::vector<TriangleMesh> result{cage.cage};
-  if (cage.polygons) {
-    TriangleMesh other{cage.polygons->positions, {}};
-    for (std::size_t f = 0; f < cage.polygons->face_count(); ++f) {
-      const std::span<const Index> face = cage.polygons->face(f);
-      const std::size_t k = face.size() == 4 ? 1 : 0;
-      other.triangles.push_back({face[k], face[k + 1], face[k + 2]});
-      if (face.size() == 4) {
-        other.triangles.push_back({face[1], face[3], face[0]});
-      }
-    }
-    result.push_back(std::move(other));
-  }
-  return result;
-}
-
-bool are_apart(const BudgetCage& a, const BudgetCage& b) {
-  for (const TriangleMesh& s : cuts(a)) {
-    for (const TriangleMesh& t : cuts(b)) {
+bool are_apart(const GeneratedCage& a, const GeneratedCage& b) {
+  // Along any diagonals.
+  for (const TriangleMesh& s : cuts_of(a.faces)) {
+    for (const TriangleMesh& t : cuts_of(b.faces)) {
       if (!is_embedded(joined(s, t))) {
         return false;
       }
@@ -133,18 +125,18 @@ struct Budget {
   int faces = 0;
 };
 
-int vertex_count(const BudgetCage& cage) {
-  return static_cast<int>(cage.cage.positions.size());
+int vertex_count(const GeneratedCage& cage) {
+  return static_cast<int>(cage.faces.positions.size());
 }
 
-int face_count(const BudgetCage& cage) {
-  return static_cast<int>(cage.polygons ? cage.polygons->face_count() : cage.cage.triangles.size());
+int face_count(const GeneratedCage& cage) {
+  return static_cast<int>(cage.faces.face_count());
 }
 
 /// By how much more than the budget the cages have together.
-Budget excess_of(const std::vector<std::optional<BudgetCage>>& cages, const Budget& budget) {
+Budget excess_of(const std::vector<std::optional<GeneratedCage>>& cages, const Budget& budget) {
   Budget excess{budget.vertices > 0 ? -budget.vertices : 0, budget.faces > 0 ? -budget.faces : 0};
-  for (const std::optional<BudgetCage>& cage : cages) {
+  for (const std::optional<GeneratedCage>& cage : cages) {
     excess.vertices += budget.vertices > 0 ? vertex_count(*cage) : 0;
     excess.faces += budget.faces > 0 ? face_count(*cage) : 0;
   }
@@ -152,9 +144,10 @@ Budget excess_of(const std::vector<std::optional<BudgetCage>>& cages, const Budg
 }
 
 /// Whether a cage is as small as it may be, or could not be made so.
-bool keeps_to(const BudgetCage& cage, const Budget& budget) {
-  return !cage.report.reached || ((budget.vertices == 0 || vertex_count(cage) <= budget.vertices) &&
-                                  (budget.faces == 0 || face_count(cage) <= budget.faces));
+bool keeps_to(const GeneratedCage& cage, const Budget& budget) {
+  return !is_within_budget(cage) ||
+         ((budget.vertices == 0 || vertex_count(cage) <= budget.vertices) &&
+          (budget.faces == 0 || face_count(cage) <= budget.faces));
 }
 
 /// Faces of both.
@@ -175,12 +168,12 @@ PolygonMesh joined_faces(const PolygonMesh& a, const PolygonMesh& b) {
 }
 
 /// Which groups must be joined because their cages meet or lie one within another: exact.
-std::vector<std::size_t> joins_of(const std::vector<std::optional<BudgetCage>>& cages) {
+std::vector<std::size_t> joins_of(const std::vector<std::optional<GeneratedCage>>& cages) {
   std::vector<std::size_t> into(cages.size());
   std::iota(into.begin(), into.end(), 0);
   std::vector<Box3> boxes;
-  for (const std::optional<BudgetCage>& cage : cages) {
-    boxes.push_back(bounding_box(cage->cage.positions));
+  for (const std::optional<GeneratedCage>& cage : cages) {
+    boxes.push_back(bounding_box(cage->faces.positions));
   }
   for (std::size_t a = 0; a < cages.size(); ++a) {
     for (std::size_t b = a + 1; b < cages.size() && into[a] == a; ++b) {
@@ -218,51 +211,51 @@ void add_pairs(MirrorPairing& pairing, const MirrorPairing& more, std::size_t ve
 }
 
 /// All cages as one, and what is known of them together.
-BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
-                    const std::vector<ModelPart>& parts, double whole,
-                    const BudgetCageOptions& options) {
-  BudgetCage all;
-  all.report.reached = true;
-  all.clearance = options.improve.clearance;
-  all.clearance_asked = options.improve.clearance;
+GeneratedCage gathered(std::vector<std::optional<GeneratedCage>>& cages,
+                       const std::vector<ModelPart>& parts, double whole,
+                       const GenerateOptions& options) {
+  GeneratedCage all;
+  all.method = options.method;
+  all.clearance = options.clearance;
   all.pieces = 0;
   for (std::size_t g = 0; g < cages.size(); ++g) {
-    BudgetCage& cage = *cages[g];
+    GeneratedCage& cage = *cages[g];
     restate(cage, diagonal(parts[g].mesh.positions) / whole);
+    const std::size_t vertices = all.faces.positions.size();
     if (cage.mirror) {
-      add_pairs(all.mirror ? *all.mirror : all.mirror.emplace(), *cage.mirror,
-                all.cage.positions.size(), static_cast<std::size_t>(face_count(all)));
+      add_pairs(all.mirror ? *all.mirror : all.mirror.emplace(), *cage.mirror, vertices,
+                all.faces.face_count());
     }
     for (std::vector<Index>& ring : cage.limb_rings) {
       for (Index& v : ring) {
-        v += static_cast<Index>(all.polygons ? all.polygons->positions.size() : 0);
+        v += static_cast<Index>(vertices);
       }
       all.limb_rings.push_back(std::move(ring));
     }
-    all.cage = all.pieces == 0 ? std::move(cage.cage) : joined(all.cage, cage.cage);
-    if (cage.polygons) {
-      all.polygons = all.polygons ? joined_faces(*all.polygons, *cage.polygons) : cage.polygons;
-      all.quads = report_of(*all.polygons);
-    }
+    all.faces = all.pieces == 0 ? std::move(cage.faces) : joined_faces(all.faces, cage.faces);
     constexpr double rounding = 1e-12;
     if (cage.clearance < (1 - rounding) * all.clearance) {
       all.clearance = cage.clearance;
     }
-    all.report.objective += cage.report.objective;
-    all.report.simplify_seconds += cage.report.simplify_seconds;
-    all.report.refine_seconds += cage.report.refine_seconds;
-    if (!cage.report.reached) {
-      all.report.reached = false;
-      all.report.why_not = cage.report.why_not;
+    for (const Remark& remark : cage.remarks) {
+      add(all, remark);
+    }
+    if (cage.method == Method::envelope) {
+      all.method = cage.method;
     }
     if (cage.gap) {
       all.gap = std::max(all.gap.value_or(0), *cage.gap);
     }
+    all.objective += cage.objective;
     all.start_vertices += cage.start_vertices;
     all.resolution = std::max(all.resolution, cage.resolution);
     all.bridges += cage.bridges;
     all.pieces += cage.pieces;
     add_times(all.times, cage.times);
+  }
+  all.triangles = to_triangle_mesh(all.faces);
+  if (options.quads) {
+    all.quads = report_of(all.faces);
   }
   return all;
 }
@@ -270,10 +263,10 @@ BudgetCage gathered(std::vector<std::optional<BudgetCage>>& cages,
 /// The cages of all groups, while they are being made.
 class PieceCages {
 public:
-  PieceCages(TriangleView model, PieceGroups groups, const BudgetCageOptions& options,
-             const PieceMaker& maker)
+  PieceCages(TriangleView model, PieceGroups groups, const GenerateOptions& options,
+             const PartMaker& maker)
       : model_(model), whole_(diagonal(model.positions)), options_(options),
-        maker_(maker), budget_{options.improve.vertices, options.improve.faces} {
+        maker_(maker), budget_{vertex_limit(options), options.faces} {
     set_groups(std::move(groups));
     cages_.resize(parts_.size());
   }
@@ -295,7 +288,7 @@ public:
       if (cages_[g] && keeps_to(*cages_[g], share)) {
         continue;
       }
-      Result<BudgetCage> made =
+      Result<GeneratedCage> made =
           make(g, share,
                progress.part(static_cast<double>(g) / count, static_cast<double>(g + 1) / count));
       if (!made) {
@@ -311,7 +304,7 @@ public:
     const Budget excess = excess_of(cages_, budget_);
     std::size_t largest = cages_.size();
     for (std::size_t g = 0; g < cages_.size(); ++g) {
-      if (cages_[g]->report.reached &&
+      if (is_within_budget(*cages_[g]) &&
           (largest == cages_.size() || vertex_count(*cages_[g]) > vertex_count(*cages_[largest]))) {
         largest = g;
       }
@@ -319,7 +312,7 @@ public:
     if (largest == cages_.size() || (excess.vertices == 0 && excess.faces == 0)) {
       return success();
     }
-    std::optional<BudgetCage>& cage = cages_[largest];
+    std::optional<GeneratedCage>& cage = cages_[largest];
     Budget share;
     if (budget_.vertices > 0) {
       share.vertices =
@@ -328,7 +321,7 @@ public:
     if (budget_.faces > 0) {
       share.faces = std::max(cage->pieces * faces_for_a_piece, face_count(*cage) - excess.faces);
     }
-    Result<BudgetCage> made = make(largest, share, progress);
+    Result<GeneratedCage> made = make(largest, share, progress);
     if (!made) {
       return made.error();
     }
@@ -344,7 +337,7 @@ public:
     if (fewer.count == groups_.count) {
       return false;
     }
-    std::vector<std::optional<BudgetCage>> kept(fewer.count);
+    std::vector<std::optional<GeneratedCage>> kept(fewer.count);
     std::vector<std::size_t> members(fewer.count, 0);
     std::vector<bool> seen(groups_.count, false);
     for (std::size_t v = 0; v < groups_.group_of.size(); ++v) {
@@ -353,7 +346,7 @@ public:
         seen[g] = true;
         ++members[fewer.group_of[v]];
         kept[fewer.group_of[v]] =
-            members[fewer.group_of[v]] == 1 ? std::move(cages_[g]) : std::optional<BudgetCage>();
+            members[fewer.group_of[v]] == 1 ? std::move(cages_[g]) : std::optional<GeneratedCage>();
       }
     }
     cages_ = std::move(kept);
@@ -361,12 +354,11 @@ public:
     return true;
   }
 
-  BudgetCage together() {
+  GeneratedCage together() {
     const Budget excess = excess_of(cages_, budget_);
-    BudgetCage all = gathered(cages_, parts_, whole_, options_);
+    GeneratedCage all = gathered(cages_, parts_, whole_, options_);
     if (options_.max_gap == 0 && excess.vertices == 0 && excess.faces == 0) {
-      all.report.reached = true;
-      all.report.why_not.clear();
+      drop(all, Reason::budget_not_reached);
     }
     return all;
   }
@@ -377,39 +369,108 @@ private:
     parts_ = parts_of(model_, groups_);
   }
 
-  Result<BudgetCage> make(std::size_t g, const Budget& share, const Progress& progress) const {
+  Result<GeneratedCage> make(std::size_t g, const Budget& share, const Progress& progress) const {
     PartOptions own = options_for(parts_[g], whole_, options_);
-    own.options.improve.vertices = share.vertices;
-    own.options.improve.faces = share.faces;
+    own.options.vertices = share.vertices;
+    own.options.faces = share.faces;
     return maker_.make(parts_[g].mesh, own.options, progress);
   }
 
   TriangleView model_;
   double whole_;
-  const BudgetCageOptions& options_;
-  const PieceMaker& maker_;
+  const GenerateOptions& options_;
+  const PartMaker& maker_;
   Budget budget_;
   PieceGroups groups_;
   std::vector<ModelPart> parts_;
-  std::vector<std::optional<BudgetCage>> cages_;
+  std::vector<std::optional<GeneratedCage>> cages_;
 };
+
+struct Grouped {
+  PieceGroups groups;
+  std::size_t apart = 0; ///< groups that are apart, of the model and its image if there is one
+};
+
+Result<Grouped> plain_groups(TriangleView model, double clearance, const Progress& progress) {
+  Result<PieceGroups> groups = piece_groups(model, clearance, voxels_for_pieces, progress);
+  if (!groups) {
+    return groups.error();
+  }
+  const std::size_t apart = groups->count;
+  return Grouped{std::move(*groups), apart};
+}
+
+/// Each with its mirror image.
+Result<Grouped> mirrored_groups(TriangleView model, const MirrorPlane& plane, double clearance,
+                                const Progress& progress) {
+  const TriangleMesh same{{model.positions.begin(), model.positions.end()},
+                          {model.triangles.begin(), model.triangles.end()}};
+  const TriangleMesh both = joined(same, mirror_image(model, plane));
+  const Result<PieceGroups> groups = piece_groups(both, clearance, voxels_for_pieces, progress);
+  if (!groups) {
+    return groups.error();
+  }
+  const std::size_t count = model.positions.size();
+  DisjointSets sets(groups->count);
+  for (std::size_t v = 0; v < count; ++v) {
+    sets.join(groups->group_of[v], groups->group_of[v + count]);
+  }
+  std::vector<std::size_t> into;
+  for (Index g = 0; g < groups->count; ++g) {
+    into.push_back(sets.find(g));
+  }
+  Grouped result{joined_groups(*groups, into), groups->count};
+  result.groups.group_of.resize(count); // those of the image are the same ones
+  return result;
+}
 
 } // namespace
 
-Result<BudgetCage> make_pieces(TriangleView model, PieceGroups groups,
-                               const BudgetCageOptions& options, const PieceMaker& maker,
-                               const Progress& progress) {
-  PieceCages pieces(model, fit_for_cages(model, std::move(groups), options, maker), options, maker);
-  constexpr double usual = 0.9; // of the time: hardly ever is a piece stuck
+Result<bool> has_pieces_apart(TriangleView model, const GenerateOptions& options,
+                              const Progress& progress) {
+  const Result<PieceGroups> groups =
+      piece_groups(model, options.clearance, voxels_for_pieces, progress);
+  return groups ? Result<bool>(groups->count > 1) : groups.error();
+}
+
+Result<GeneratedCage> make_pieces(TriangleView model, const GenerateOptions& options,
+                                  const std::optional<MirrorPlane>& plane, const PartMaker& maker,
+                                  const Progress& progress) {
+  constexpr double grouped = 0.02; // of the time
+  constexpr double judged = 0.95;
+  Result<Grouped> apart =
+      plane ? mirrored_groups(model, *plane, options.clearance, progress.part(0, grouped))
+            : plain_groups(model, options.clearance, progress.part(0, grouped));
+  if (!apart) {
+    return apart.error();
+  }
+  PieceCages pieces(model, fit_for_cages(model, std::move(apart->groups), options, maker), options,
+                    maker);
+  const Progress making = progress.part(grouped, judged);
+  double done = 0;
   do {
-    if (const Status made = pieces.make_missing(progress.part(0, usual)); !made) {
+    // Hardly ever do cages meet or is a piece stuck: what is left is for that.
+    constexpr double usual = 0.9;
+    const double made_all = done + usual * (1 - done);
+    const double made_up = made_all + 0.5 * (1 - made_all);
+    if (const Status made = pieces.make_missing(making.part(done, made_all)); !made) {
       return made.error();
     }
-    if (const Status made = pieces.make_up_for_stuck(progress.part(usual, 1)); !made) {
+    if (const Status made = pieces.make_up_for_stuck(making.part(made_all, made_up)); !made) {
       return made.error();
     }
+    done = made_up;
   } while (pieces.join_those_that_meet());
-  return pieces.together();
+  GeneratedCage cage = pieces.together();
+  cage.joined = static_cast<int>(apart->apart) - cage.pieces;
+
+  const Result<ValidityReport> validity = validate_cage(
+      cage.faces, model, {.allow_pieces = true, .first_only = true}, progress.part(judged, 1));
+  if (!validity) {
+    return validity.error();
+  }
+  return validity->valid() ? Result<GeneratedCage>(std::move(cage))
+                           : not_valid(*validity, "try another resolution");
 }
 
 } // namespace cagewright

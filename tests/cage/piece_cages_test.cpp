@@ -1,4 +1,4 @@
-#include "cage/budget_pieces.h"
+#include "cage/piece_cages.h"
 
 #include "mesh/shapes.h"
 #include <cagewright/mesh/measures.h>
@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,21 +25,11 @@ TriangleMesh two_cubes(double size = 1) {
   return joined(make_cube(), other);
 }
 
-/// Each cube is a group.
-PieceGroups groups_of(const TriangleMesh& model) {
-  PieceGroups groups;
-  groups.count = 2;
-  for (std::size_t v = 0; v < model.positions.size(); ++v) {
-    groups.group_of.push_back(v < model.positions.size() / 2 ? 0 : 1);
-  }
-  return groups;
-}
-
 /// A box of quads round the part. With a bend, two opposite corners of the quad that looks at the
 /// other part go towards it by so much: a valley runs between them along the quad's first diagonal,
 /// a ridge along its second, and the ridges of the two parts are at right angles. Not judged: what
 /// a maker gives is believed.
-BudgetCage box_round(TriangleView part, double bend = 0) {
+GeneratedCage box_round(TriangleView part, double bend = 0) {
   const Box3 box = bounding_box(part.positions);
   const PolygonMesh unit = make_quad_cube();
   const Box3 unit_box = bounding_box(unit.positions);
@@ -59,84 +51,88 @@ BudgetCage box_round(TriangleView part, double bend = 0) {
     }
     cage.add_face(face);
   }
-  BudgetCage made;
-  made.cage = to_triangle_mesh(cage);
-  made.polygons = std::move(cage);
-  made.report.reached = true;
+  GeneratedCage made;
+  made.triangles = to_triangle_mesh(cage);
+  made.faces = std::move(cage);
   return made;
 }
 
-AlikeSurfaces one_surface(TriangleView part) {
-  return {{{part.positions.begin(), part.positions.end()},
-           {part.triangles.begin(), part.triangles.end()}},
-          1};
-}
+/// Makes cages with a function, and notes of what.
+class Maker : public PartMaker {
+public:
+  using Make = std::function<Result<GeneratedCage>(TriangleView, const GenerateOptions&)>;
+  Maker(TriangleView model, Make make)
+      : PartMaker(model, GenerateOptions(), std::nullopt), make_(std::move(make)) {}
 
-BudgetCageOptions options() {
-  BudgetCageOptions result;
-  result.improve.vertices = 40;
+  [[nodiscard]] Result<GeneratedCage> make(TriangleView part, const GenerateOptions& options,
+                                           const Progress& /*progress*/) const override {
+    parts.push_back(part.positions.size());
+    return make_(part, options);
+  }
+
+  mutable std::vector<std::size_t> parts; ///< how many vertices each had
+
+private:
+  Make make_;
+};
+
+GenerateOptions options() {
+  GenerateOptions result;
+  result.vertices = 40;
   return result;
 }
 
 TEST(MakePieces, GivesEachGroupThatIsApartItsOwnCage) {
   const TriangleMesh model = two_cubes();
-  std::vector<std::size_t> parts;
-  const PieceMaker maker{
-      [&](TriangleView part, const BudgetCageOptions&, const Progress&) -> Result<BudgetCage> {
-        parts.push_back(part.positions.size());
-        return box_round(part);
-      },
-      one_surface};
-  const Result<BudgetCage> made = make_pieces(model, groups_of(model), options(), maker);
+  const Maker maker(model, [](TriangleView part, const GenerateOptions&) {
+    return Result<GeneratedCage>(box_round(part));
+  });
+  const Result<GeneratedCage> made = make_pieces(model, options(), std::nullopt, maker);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->pieces, 2);
-  EXPECT_EQ(parts, (std::vector<std::size_t>{8, 8}));
+  EXPECT_EQ(made->joined, 0);
+  EXPECT_EQ(maker.parts, (std::vector<std::size_t>{8, 8}));
 }
 
 TEST(MakePieces, JoinsGroupsWhoseCagesCrossOnlyAlongTheSecondDiagonals) {
   const TriangleMesh model = two_cubes();
   const double between = 4 - 1.2 * bounding_box(make_cube().positions).sizes().x();
   const double bend = 0.7 * between; // corners do not meet, ridges do
-  std::vector<std::size_t> parts;
-  const PieceMaker maker{
-      [&](TriangleView part, const BudgetCageOptions&, const Progress&) -> Result<BudgetCage> {
-        parts.push_back(part.positions.size());
-        return box_round(part, part.positions.size() == 8 ? bend : 0);
-      },
-      one_surface};
-  const Result<BudgetCage> made = make_pieces(model, groups_of(model), options(), maker);
+  const Maker maker(model, [&](TriangleView part, const GenerateOptions&) {
+    return Result<GeneratedCage>(box_round(part, part.positions.size() == 8 ? bend : 0));
+  });
+  const Result<GeneratedCage> made = make_pieces(model, options(), std::nullopt, maker);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->pieces, 1);
-  ASSERT_EQ(parts.size(), 3U);
-  EXPECT_EQ(parts.back(), 16U) << "a cage for both together";
+  EXPECT_EQ(made->joined, 1);
+  ASSERT_EQ(maker.parts.size(), 3U);
+  EXPECT_EQ(maker.parts.back(), 16U) << "a cage for both together";
 }
 
 TEST(MakePieces, StatesLengthsInDiagonalsOfTheWholeModel) {
   const TriangleMesh model = two_cubes(0.5);
-  const PieceMaker maker{
-      [&](TriangleView part, const BudgetCageOptions& own, const Progress&) -> Result<BudgetCage> {
-        BudgetCage made = box_round(part);
-        const bool is_small = bounding_box(part.positions).center().x() > 2;
-        made.gap = is_small ? 0.2 : 0.05; // of its own diagonal
-        made.clearance = own.improve.clearance;
-        return made;
-      },
-      one_surface};
-  const Result<BudgetCage> made = make_pieces(model, groups_of(model), options(), maker);
+  const Maker maker(model, [](TriangleView part, const GenerateOptions& own) {
+    GeneratedCage made = box_round(part);
+    const bool is_small = bounding_box(part.positions).center().x() > 2;
+    made.gap = is_small ? 0.2 : 0.05; // of its own diagonal
+    made.clearance = own.clearance;
+    return Result<GeneratedCage>(std::move(made));
+  });
+  const Result<GeneratedCage> made = make_pieces(model, options(), std::nullopt, maker);
   ASSERT_TRUE(made) << made.error().message;
   const double small = 0.5 * diagonal(make_cube().positions);
   ASSERT_TRUE(made->gap);
   EXPECT_NEAR(*made->gap, 0.2 * small / diagonal(model.positions), 1e-12)
       << "the greatest of both, a length of the small one's";
-  EXPECT_NEAR(made->clearance, options().improve.clearance, 1e-12);
+  EXPECT_NEAR(made->clearance, options().clearance, 1e-12);
 }
 
 TEST(MakePieces, PassesOnWhatGoesWrong) {
   const TriangleMesh model = two_cubes();
-  const PieceMaker maker{[](TriangleView, const BudgetCageOptions&,
-                            const Progress&) -> Result<BudgetCage> { return Error::cancelled(); },
-                         one_surface};
-  const Result<BudgetCage> made = make_pieces(model, groups_of(model), options(), maker);
+  const Maker maker(model, [](TriangleView, const GenerateOptions&) {
+    return Result<GeneratedCage>(Error::cancelled());
+  });
+  const Result<GeneratedCage> made = make_pieces(model, options(), std::nullopt, maker);
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::cancelled);
 }

@@ -1,0 +1,89 @@
+#include "cage/ground.h"
+
+#include "cage/quad_cuts.h"
+#include <cagewright/mesh/measures.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace cagewright {
+
+Ground::Ground(TriangleView model, const GenerateOptions& options,
+               const std::optional<MirrorPlane>& plane)
+    : model_(model), options_(options), diagonal_(cagewright::diagonal(model.positions)) {
+  if (!plane) {
+    return;
+  }
+  frame_.emplace(*plane, bounding_box(model.positions));
+  half_ = half_model(model, *frame_);
+  if (!options.density.empty()) {
+    for (const Index v : half_.vertices) {
+      density_of_half_.push_back(options.density[v]);
+    }
+  }
+}
+
+TriangleMesh Ground::model_here() const {
+  return is_half() ? in_frame(model_, *frame_)
+                   : TriangleMesh{{model_.positions.begin(), model_.positions.end()},
+                                  {model_.triangles.begin(), model_.triangles.end()}};
+}
+
+ImproveOptions Ground::budget(double clearance) const {
+  ImproveOptions budget;
+  budget.vertices = vertex_limit(options_);
+  budget.faces = options_.faces;
+  budget.rounds = options_.rounds;
+  budget.clearance = clearance;
+  budget.density = is_half() ? std::span<const double>(density_of_half_) : options_.density;
+  budget.extent = extent();
+  budget.diagonal = diagonal_;
+  return budget;
+}
+
+Ground::WholeCage Ground::whole(const PolygonMesh& made) const {
+  if (!is_half()) {
+    return {made, std::nullopt};
+  }
+  Whole<PolygonMesh> both = join_halves(made, *frame_);
+  return {std::move(both.mesh), std::move(both.pairing)};
+}
+
+TriangleMesh Ground::whole(const TriangleMesh& made) const {
+  return is_half() ? join_halves(made, *frame_).mesh : made;
+}
+
+TriangleMesh Ground::with_image(TriangleMesh made) const {
+  if (!is_half()) {
+    return made;
+  }
+  const std::size_t vertices = made.positions.size();
+  const std::size_t triangles = made.triangles.size();
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const Vec3 p = made.positions[v];
+    made.positions.emplace_back(-p.x(), p.y(), p.z());
+  }
+  const auto image = static_cast<Index>(vertices);
+  for (std::size_t f = 0; f < triangles; ++f) {
+    const auto [a, b, c] = made.triangles[f];
+    made.triangles.push_back({a + image, c + image, b + image});
+  }
+  return made;
+}
+
+const TriangleBvh& Ground::hierarchy() const {
+  if (!hierarchy_) {
+    hierarchy_ = std::make_unique<const TriangleBvh>(model_);
+  }
+  return *hierarchy_;
+}
+
+GreatestGap Ground::gap_of(const TriangleMesh& made, double tolerance) const {
+  return greatest_gap(whole(made), hierarchy(), tolerance);
+}
+
+double Ground::gap_of(const PolygonMesh& made, double tolerance) const {
+  return greatest_gap_along_any(whole(made).faces, hierarchy(), tolerance);
+}
+
+} // namespace cagewright

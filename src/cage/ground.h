@@ -1,0 +1,91 @@
+/// \file
+/// Where a closed surface is made: on the whole model, or on one side of a mirror plane. What is
+/// done there is the same for both. Internal to this module.
+#pragma once
+
+#include "cage/start.h"
+#include "improve/cage_extent.h"
+#include "improve/improve.h"
+#include "spatial/bvh.h"
+#include "symmetry/half.h"
+#include "validate/greatest_gap.h"
+#include <cagewright/cage/generated_cage.h>
+#include <cagewright/core/result.h>
+#include <cagewright/mesh/polygon_mesh.h>
+#include <cagewright/mesh/triangle_mesh.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace cagewright {
+
+/// Coordinates, what has to be enclosed there, and how what is made there becomes a whole cage. Of
+/// a half the coordinates are those in which the mirror plane is x = 0.
+class Ground {
+public:
+  /// The whole model, or with a plane one side of it. The views must live as long as the ground.
+  Ground(TriangleView model, const GenerateOptions& options,
+         const std::optional<MirrorPlane>& plane);
+  Ground(const Ground&) = delete;
+  Ground& operator=(const Ground&) = delete;
+  virtual ~Ground() = default;
+
+  [[nodiscard]] bool is_half() const { return frame_.has_value(); }
+  [[nodiscard]] CageExtent extent() const {
+    return is_half() ? CageExtent::half : CageExtent::whole;
+  }
+  [[nodiscard]] const MirrorFrame& frame() const { return *frame_; }
+
+  /// The model in its own coordinates, and in those of the ground.
+  [[nodiscard]] TriangleView model() const { return model_; }
+  [[nodiscard]] TriangleMesh model_here() const;
+  /// What is to be enclosed here: the model, or what half a cage must enclose.
+  [[nodiscard]] TriangleView enclosed() const {
+    return is_half() ? TriangleView(half_.mesh) : model_;
+  }
+  /// Of the model: what all lengths are fractions of.
+  [[nodiscard]] double diagonal() const { return diagonal_; }
+
+  /// What is asked of the improvement here. The density lives as long as the ground.
+  [[nodiscard]] ImproveOptions budget(double clearance) const;
+  /// As many vertices and faces as the whole has.
+  [[nodiscard]] std::size_t vertices_of(std::span<const Vec3> positions) const {
+    return whole_vertices(positions, extent());
+  }
+  [[nodiscard]] std::size_t faces_of(std::size_t faces) const {
+    return (is_half() ? 2 : 1) * faces;
+  }
+
+  /// The whole cage of what was made here, in the model's coordinates.
+  struct WholeCage {
+    PolygonMesh faces;
+    std::optional<MirrorPairing> mirror;
+  };
+  [[nodiscard]] WholeCage whole(const PolygonMesh& made) const;
+  [[nodiscard]] TriangleMesh whole(const TriangleMesh& made) const;
+  /// What was made here, and of a half its mirror image beside it: in the coordinates of the
+  /// ground, not joined.
+  [[nodiscard]] TriangleMesh with_image(TriangleMesh made) const;
+
+  /// Bounds the distance from the whole cage to the model: what counts is the model alone, also of
+  /// half a cage, which encloses the model and its mirror image. To within `tolerance`, both in the
+  /// model's units; of quads along any diagonals.
+  [[nodiscard]] virtual GreatestGap gap_of(const TriangleMesh& made, double tolerance) const;
+  [[nodiscard]] virtual double gap_of(const PolygonMesh& made, double tolerance) const;
+
+private:
+  const TriangleBvh& hierarchy() const;
+
+  TriangleView model_;
+  const GenerateOptions& options_;
+  double diagonal_ = 0;
+  std::optional<MirrorFrame> frame_;
+  HalfModel half_;
+  std::vector<double> density_of_half_;
+  mutable std::unique_ptr<const TriangleBvh> hierarchy_; // made when it is first asked for
+};
+
+} // namespace cagewright

@@ -1,0 +1,58 @@
+/// \file
+/// Which of several cages is the best: one order, for every try. Internal to this module.
+#pragma once
+
+#include "mesh/shape_limits.h"
+#include <cagewright/mesh/triangle_mesh.h>
+#include <cagewright/quads/quad_report.h>
+
+#include <algorithm>
+#include <compare>
+
+namespace cagewright {
+
+/// What a cage costs: less is better. Whether it is beyond the budget, and then its volume and what
+/// there is between it and the model, or what stands for them, times what else makes it dearer.
+struct Cost {
+  bool is_over = false;
+  double value = 0;
+
+  auto operator<=>(const Cost&) const = default;
+  [[nodiscard]] Cost times(double factor) const { return {is_over, factor * value}; }
+};
+
+/// What webs, and handles that are not the model's own, make a cage dearer by.
+///
+/// \param webbing  SpaceBetween::share_inside()
+/// \param genus    handles of its start
+/// \param known    handles that the model has itself
+double dearer_by(double webbing, int genus, int known);
+
+/// In the order of weight: what was asked for, enough quads, no needles, few thin faces. More than
+/// enough of one does not make up for another; of two that are alike the earlier stays.
+struct Merit {
+  bool reached = false; ///< the budget, and the gap if one was asked for
+  double quads = 0;     ///< share of the faces; of triangles where none are asked for: enough
+  double least = 0;     ///< least 2 r / R
+  double few_thin = 0;  ///< minus the share of thin triangles
+
+  Merit(bool has_reached, const QuadReport& quads_made)
+      : reached(has_reached), quads(std::min(quads_made.share, shape_limits::enough_quads)),
+        least(std::min(quads_made.least_quality, shape_limits::needle)),
+        few_thin(-std::max(quads_made.thin, shape_limits::few_thin)) {}
+
+  /// Of a cage of triangles.
+  Merit(bool has_reached, TriangleView cage);
+
+  auto operator<=>(const Merit&) const = default;
+
+  /// Whether enough faces are quads, and round. There may be a needle.
+  [[nodiscard]] bool is_mostly_good() const {
+    return quads >= shape_limits::enough_quads && few_thin >= -shape_limits::few_thin;
+  }
+  [[nodiscard]] bool is_well_shaped() const {
+    return is_mostly_good() && least >= shape_limits::needle;
+  }
+};
+
+} // namespace cagewright

@@ -1,0 +1,77 @@
+#include "cage/box_cage.h"
+#include "cage/ground.h"
+#include "cage/start.h"
+#include "mesh/shapes.h"
+#include "spatial/bvh.h"
+#include <cagewright/validate/validate_cage.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace cagewright {
+namespace {
+
+/// Of the diagonal: a model this near to its mirror image is enclosed with it by any box.
+constexpr double same = 1e-6;
+
+/// The model; of half a ground, and its mirror image, unless they are the same.
+TriangleMesh to_enclose(const Ground& ground) {
+  TriangleMesh model{{ground.model().positions.begin(), ground.model().positions.end()},
+                     {ground.model().triangles.begin(), ground.model().triangles.end()}};
+  return !ground.is_half() || ground.frame().plane().high_error < same
+             ? model
+             : joined(model, mirror_image(ground.model(), ground.frame().plane()));
+}
+
+/// The half of a union, if it makes a valid whole.
+Result<TriangleMesh> half_of(const TriangleMesh& united, const Ground& ground,
+                             const Progress& progress) {
+  const Error no_start{ErrorCode::no_valid_cage,
+                       "the union of the boxes cut by the mirror plane is no valid cage"};
+  std::optional<TriangleMesh> half = cut_half(in_frame(united, ground.frame()));
+  if (!half) {
+    return no_start;
+  }
+  const Result<ValidityReport> validity =
+      validate_cage(ground.whole(*half), ground.model(), {.first_only = true}, progress);
+  if (!validity) {
+    return validity.error();
+  }
+  return validity->valid() ? Result<TriangleMesh>(std::move(*half)) : no_start;
+}
+
+} // namespace
+
+Result<Start> start_from_boxes(const Ground& ground, const GenerateOptions& options,
+                               const StartTry& /*how*/, const Progress& progress) {
+  constexpr double united = 0.95; // of the time
+  Result<BoxCage> boxes =
+      make_box_cage(to_enclose(ground), options, options.clearance, progress.part(0, united));
+  if (!boxes) {
+    return boxes.error();
+  }
+  Start start;
+  start.method = Method::boxes_improved;
+  start.surface = std::move(boxes->cage);
+  if (ground.is_half()) {
+    Result<TriangleMesh> half = half_of(start.surface, ground, progress.part(united, 1));
+    if (!half) {
+      return half.error();
+    }
+    start.surface = std::move(*half);
+  }
+  // Boxes that were joined may come nearer than the clearance. No step of the improvement comes
+  // nearer still.
+  const double least =
+      mesh_distance(TriangleBvh(start.surface), TriangleBvh(ground.enclosed())).distance;
+  if (!(least > 0)) {
+    return Error{ErrorCode::no_valid_cage, "the union of the boxes touches the model"};
+  }
+  constexpr double below = 0.99;
+  start.clearance = std::min(options.clearance, below * least / ground.diagonal());
+  start.boxes = std::move(boxes->made);
+  return start;
+}
+
+} // namespace cagewright
