@@ -22,6 +22,10 @@ class Symbols(unittest.TestCase):
         self.assertEqual(exported - declared, set(), "exported, but not declared")
         self.assertEqual(declared - exported, set(), "declared, but not exported")
 
+    def test_the_documentation_shows_the_example(self):
+        source = HEADER.parents[3]
+        self.assertIn((source / "examples" / "make_cage.c").read_text(), (source / "docs" / "c.md").read_text())
+
     def test_has_a_name_with_its_abi(self):
         read = subprocess.run(["readelf", "-d", LIBRARY], check=True, capture_output=True, text=True)
         self.assertRegex(read.stdout, r"SONAME.*libcagewright\.so\.\d+\]")

@@ -1,0 +1,206 @@
+"""Models that follow their cages."""
+
+import ctypes
+import json
+from collections import namedtuple
+
+import numpy as np
+
+from . import _arrays
+from ._calls import control as quick_control
+from ._calls import run
+from ._library import DeformerOptions, Handle, checked, lib, path_bytes, take_text
+
+_STORAGES = {"single": 0, "full": 1, "compact": 2}
+
+
+def _settings_text(settings):
+    """quads="diagonal", poisson_ratio=0.3 -> b"quads=diagonal poisson-ratio=0.3"."""
+    words = [f"{name.replace('_', '-')}={value}" for name, value in settings.items() if value is not None]
+    return " ".join(words).encode() if words else None
+
+
+class CSR(namedtuple("CSR", ["data", "indices", "indptr", "shape"])):
+    """A sparse matrix in the form of scipy's csr_matrix:
+    ``scipy.sparse.csr_matrix((w.data, w.indices, w.indptr), shape=w.shape)``.
+    """
+
+    def toarray(self):
+        """All of it, zeros included."""
+        dense = np.zeros(self.shape)
+        rows = np.repeat(np.arange(self.shape[0]), np.diff(self.indptr))
+        dense[rows, self.indices] = self.data
+        return dense
+
+
+def coordinates(kind, points, cage_vertices, cage_faces=None, *, sparse=False, threads=None, progress=None, **settings):
+    """How much each point follows each vertex of a cage.
+
+    Args:
+        kind: of coordinates: "mean_value" (defined everywhere, exact on the cage).
+        points: P x 3, in the cage's units.
+        cage_vertices, cage_faces: a closed cage, as the model of generate(); or an object that has both.
+        sparse: leave out zeros: a CSR instead of an array.
+        threads, progress: as for generate().
+        settings: of the kind: quads="center" (four triangles round the middle of each quad) or "diagonal" (two).
+
+    Returns:
+        float64, P x C weights W: rows sum to 1, and ``W @ cage_vertices`` gives the points; ``W @ moved_vertices``
+        where they go. With sparse=True a CSR of the same.
+
+    Raises:
+        InputError: the cage is open, or there is no such kind or setting.
+
+    >>> W = cagewright.coordinates("mean_value", V, *cage)
+    >>> moved = W @ posed_cage_vertices
+    """
+    cage_vertices, cage_faces = _arrays.two_parts(cage_vertices, cage_faces, "the cage")
+    cage = _arrays.mesh_view(cage_vertices, cage_faces, "the cage")
+    where, keep = _arrays.points(points, "the points")
+    text = _settings_text(settings)
+
+    def work(control):
+        weights = np.empty((where.rows, cage.positions.rows))
+        checked(lib.cw_coordinates, kind.encode(), text, ctypes.byref(where), ctypes.byref(cage),
+                ctypes.byref(control), weights.ctypes.data, 0)
+        return weights
+
+    weights = run(work, threads, progress)
+    del keep
+    if not sparse:
+        return weights
+    rows, columns = np.nonzero(weights)
+    begins = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=weights.shape[0]))])
+    return CSR(weights[rows, columns], columns.astype(np.int32), begins, weights.shape)
+
+
+class Deformer:
+    """A model bound to a cage, for moving it again and again.
+
+    Args:
+        vertices, faces: the model, P vertices, as for generate().
+        cage_vertices, cage_faces: its cage at rest, C vertices. Objects that have both may stand for either.
+        coordinates: the kind, as for coordinates().
+        storage: how weights are kept: "single" (floats), "full" (doubles), or "compact" (16 bits).
+        normals: keep normals up to date.
+        threads, progress: as for generate(). `threads` holds for later moves, too.
+        settings: of the kind of coordinates.
+
+    The arrays that `positions`, `normals` and `cage_positions` give are *views* of the deformer's memory: they are not
+    copied, cannot be written to, and change whenever the cage moves. Copy what you want to keep.
+
+    >>> deformer = cagewright.Deformer(V, F, *cage)
+    >>> moved = deformer(posed_cage_vertices).copy()
+    >>> deformer.move(7, [0.1, 2.0, 0.3])     # one vertex of the cage: quicker than all
+    >>> deformer.positions, deformer.normals
+    """
+
+    def __init__(self, vertices, faces=None, cage_vertices=None, cage_faces=None, *, coordinates="mean_value",
+                 storage="single", normals=True, threads=None, progress=None, **settings):
+        if storage not in _STORAGES:
+            raise ValueError(f'storage: {storage!r} is none of "single", "full" and "compact"')
+        parts = _arrays.four_parts(vertices, faces, cage_vertices, cage_faces)
+        model = _arrays.mesh_view(*parts[:2], "the model")
+        cage = _arrays.mesh_view(*parts[2:], "the cage")
+        options = DeformerOptions(size=ctypes.sizeof(DeformerOptions), coordinates=coordinates.encode(),
+                                  settings=_settings_text(settings), storage=_STORAGES[storage],
+                                  no_normals=int(not normals))
+
+        def work(control):
+            out = ctypes.c_void_p()
+            checked(lib.cw_deformer_bind, ctypes.byref(model), ctypes.byref(cage), ctypes.byref(options),
+                    ctypes.byref(control), ctypes.byref(out))
+            return Handle(out.value, lib.cw_deformer_free)
+
+        self._handle = run(work, threads, progress)
+        self._control = quick_control(threads)
+        pointer = self._handle.pointer
+        self._points = (lib.cw_deformer_vertex_count(pointer), 3)
+        self._cage_points = (lib.cw_deformer_cage_vertex_count(pointer), 3)
+
+    def __call__(self, cage_vertices):
+        """Moves all vertices of the cage, and the model with them.
+
+        Args:
+            cage_vertices: C x 3.
+
+        Returns:
+            `positions`: a view, which the next move changes.
+        """
+        to, keep = _arrays.points(cage_vertices, "the cage's vertices")
+        checked(lib.cw_deformer_set_cage, self._handle.pointer, ctypes.byref(to), ctypes.byref(self._control))
+        del keep
+        return self.positions
+
+    def move(self, vertices, to):
+        """Moves some vertices of the cage, and the model with them. Moving k costs k / C of moving all.
+
+        Args:
+            vertices: the number of a vertex, or k of them.
+            to: x, y, z; or k x 3.
+
+        Returns:
+            `positions`: a view, which the next move changes.
+        """
+        which, keep = _arrays.array_of(np.atleast_1d(vertices), "the numbers of vertices", np.int64)
+        where, keep_too = _arrays.points(np.reshape(to, (-1, 3)), "the positions")
+        checked(lib.cw_deformer_move, self._handle.pointer, ctypes.byref(which), ctypes.byref(where),
+                ctypes.byref(self._control))
+        del keep, keep_too
+        return self.positions
+
+    @property
+    def positions(self):
+        """Where the model is now: float64, P x 3, a view."""
+        return self._view(lib.cw_deformer_positions, self._points)
+
+    @property
+    def normals(self):
+        """Unit normals of the model's vertices: float64, P x 3, a view; None without normals."""
+        if not lib.cw_deformer_normals(self._handle.pointer):
+            return None
+        return self._view(lib.cw_deformer_normals, self._points)
+
+    @property
+    def cage_positions(self):
+        """Where the cage is now: float64, C x 3, a view."""
+        return self._view(lib.cw_deformer_cage_positions, self._cage_points)
+
+    @property
+    def unbound(self):
+        """How many vertices of the model have no weights, and stay where they are."""
+        return lib.cw_deformer_unbound_count(self._handle.pointer)
+
+    @property
+    def weight_bytes(self):
+        """Memory of the weights."""
+        return lib.cw_deformer_weight_bytes(self._handle.pointer)
+
+    def _view(self, function, shape):
+        return _arrays.view(self._handle, function(self._handle.pointer), shape, "<f8", writable=False)
+
+
+def deform_file(model, cage, posed, out, *, threads=None, progress=None):
+    """Moves the model in a file as its cage has moved, and writes it: the same file with other positions and normals,
+    texture coordinates, materials, groups and all else as they were.
+
+    Args:
+        model: path of the model: OBJ, PLY, STL, OFF, GLB or glTF.
+        cage: path of its cage at rest.
+        posed: path of the cage with its vertices moved.
+        out: path to write; none of the others.
+        threads, progress: as for generate().
+
+    Returns:
+        Sentences about what was taken otherwise than it stands; usually none.
+
+    >>> cagewright.deform_file("hero.glb", "cage.obj", "cage_waving.obj", "hero_waving.glb")
+    """
+    paths = [path_bytes(path) for path in (model, cage, posed, out)]
+
+    def work(control):
+        notes = ctypes.c_void_p()
+        checked(lib.cw_deform_file, *paths, ctypes.byref(control), ctypes.byref(notes))
+        return take_text(notes.value)
+
+    return [note["message"] for note in json.loads(run(work, threads, progress))]
