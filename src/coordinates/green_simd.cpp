@@ -8,13 +8,12 @@
 //     psi_t = (sum of rho_e L_e - h Omega) / 4 pi.
 
 #include "coordinates/normal_columns.h"
-#include "coordinates/surface.h"
+#include "coordinates/surface_coordinates.h"
 #include <cagewright/coordinates/aligned_buffer.h>
 #include <cagewright/coordinates/green.h>
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -60,17 +59,14 @@ void solve_one(const Surface& surface, const GreenTile& tile, std::size_t i, Til
   std::vector<double> psi(surface.faces.size(), 0.0);
   const auto bit = static_cast<std::uint16_t>(1U << i);
   const auto put = [&] {
-    surface.share_middles(std::span(phi));
-    for (std::size_t c = 0; c < surface.cage_vertices; ++c) {
-      tile.weights[c * tile.stride + i] = phi[c];
-    }
+    put_vertices_of(surface, phi, tile.weights, tile.stride, i);
     const double unit = surface.frame.scaled_diagonal();
     for (std::size_t f = 0; f < psi.size(); ++f) {
       tile.weights[(surface.cage_vertices + f) * tile.stride + i] = psi[f] / unit;
     }
   };
   const Vec3& x = tile.points[i];
-  if (!x.allFinite() || x.cwiseAbs().maxCoeff() > 1e100) {
+  if (!is_usable(x)) {
     report.undefined |= bit;
     put();
     return;
@@ -124,22 +120,13 @@ void solve_one(const Surface& surface, const GreenTile& tile, std::size_t i, Til
 
 TileReport green_tile(const Surface& surface, const GreenTile& tile) {
   const std::size_t vertices = surface.positions.size();
-  alignas(64) std::array<double, 16> x;
-  alignas(64) std::array<double, 16> y;
-  alignas(64) std::array<double, 16> z;
-  for (std::size_t i = 0; i < 16; ++i) {
-    const Vec3& p = tile.points[std::min(i, tile.points.size() - 1)];
-    x[i] = p.x();
-    y[i] = p.y();
-    z[i] = p.z();
-  }
+  const SixteenPoints all(tile.points);
   AlignedBuffer<double> scratch(LanePoints::scratch_size(surface) + vertices * lanes);
   double* const phi = scratch.data() + LanePoints::scratch_size(surface);
   const Lanes psi_unit(per_angle / surface.frame.scaled_diagonal());
   std::array<bool, 16> again{};
   for (std::size_t first = 0; first < 16; first += lanes) {
-    LanePoints points(surface, x.data() + first, y.data() + first, z.data() + first,
-                      scratch.data());
+    LanePoints points(surface, &all.x[first], &all.y[first], &all.z[first], scratch.data());
     std::fill_n(phi, vertices * lanes, 0.0);
     double* const out = tile.weights + first;
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
@@ -153,15 +140,7 @@ TileReport green_tile(const Surface& surface, const GreenTile& tile) {
       (terms.potential() * psi_unit)
           .store_unaligned(out + (surface.cage_vertices + f) * tile.stride);
     }
-    for (std::size_t q = 0; q < surface.quads.size(); ++q) {
-      const Lanes share = Lanes::load(phi + (surface.cage_vertices + q) * lanes) * Lanes(0.25);
-      for (const Index corner : surface.quads[q]) {
-        (Lanes::load(phi + corner * lanes) + share).store(phi + corner * lanes);
-      }
-    }
-    for (std::size_t c = 0; c < surface.cage_vertices; ++c) {
-      Lanes::load(phi + c * lanes).store_unaligned(out + c * tile.stride);
-    }
+    put_vertices(surface, phi, out, tile.stride);
     const LaneFlags flagged = points.flagged();
     for (std::size_t i = 0; i < lanes; ++i) {
       again[first + i] = flagged[i];
@@ -188,32 +167,16 @@ HWY_EXPORT(green_tile);
 
 namespace {
 
-class GreenCoordinates : public Coordinates {
+class GreenCoordinates : public SurfaceCoordinates {
 public:
   GreenCoordinates(const PolygonMesh& cage, Surface surface, OutsideTreatment outside)
-      : Coordinates(normal_columns(cage.positions, surface), outside),
-        surface_(std::move(surface)) {}
+      : SurfaceCoordinates(normal_columns(cage.positions, surface), std::move(surface), outside) {}
 
 private:
-  TileReport solve_tile(std::span<const Vec3> points, std::span<double> weights,
-                        std::size_t stride) const override {
-    assert(points.size() <= 16 && stride >= 16);
-    TileReport report;
-    if (!points.empty()) {
-      std::vector<Vec3> framed;
-      for (const Vec3& p : points) {
-        framed.push_back(surface_.frame.to_frame(p));
-      }
-      report =
-          HWY_DYNAMIC_DISPATCH(green_tile)(surface_, {framed, outside(), weights.data(), stride});
-    }
-    for (std::size_t k = 0; points.size() < 16 && k < columns(); ++k) {
-      std::fill_n(weights.data() + k * stride + points.size(), 16 - points.size(), 0.0);
-    }
-    return report;
+  TileReport solve_framed(std::span<const Vec3> points, double* weights,
+                          std::size_t stride) const override {
+    return HWY_DYNAMIC_DISPATCH(green_tile)(surface(), {points, outside(), weights, stride});
   }
-
-  Surface surface_;
 };
 
 constexpr std::array<const CoordinateOption*, 2> kind_options = {&quads_option, &outside_option};

@@ -237,4 +237,20 @@ std::vector<Triangle> Surface::triangles() const {
   return all;
 }
 
+std::vector<Index> Surface::used_vertices() const {
+  std::vector<char> used(positions.size(), 0);
+  for (const Face& face : faces) {
+    for (const Index v : face.vertices) {
+      used[v] = 1;
+    }
+  }
+  std::vector<Index> list;
+  for (Index v = 0; v < used.size(); ++v) {
+    if (used[v] != 0) {
+      list.push_back(v);
+    }
+  }
+  return list;
+}
+
 } // namespace cagewright

@@ -108,6 +108,9 @@ struct Surface {
   /// The corners of each triangle.
   [[nodiscard]] std::vector<Triangle> triangles() const;
 
+  /// Which vertices and middles have faces, in order.
+  [[nodiscard]] std::vector<Index> used_vertices() const;
+
   /// The weights of middles are shared by the corners: the first C of `weights` are then complete.
   template <class T> void share_middles(std::span<T> weights, std::size_t stride = 1) const {
     for (std::size_t q = 0; q < quads.size(); ++q) {

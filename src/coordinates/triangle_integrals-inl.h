@@ -259,6 +259,47 @@ private:
   std::vector<double> face_distance_;
 };
 
+/// Sixteen points, some of them perhaps the last one again.
+struct SixteenPoints {
+  alignas(64) std::array<double, 16> x, y, z;
+
+  explicit SixteenPoints(std::span<const Vec3> points) {
+    for (std::size_t i = 0; i < 16; ++i) {
+      const Vec3& p = points[std::min(i, points.size() - 1)];
+      x[i] = p.x();
+      y[i] = p.y();
+      z[i] = p.z();
+    }
+  }
+};
+
+/// Whether arithmetic with a point leads anywhere.
+inline bool is_usable(const Vec3& x) {
+  return x.allFinite() && x.cwiseAbs().maxCoeff() < 1e100;
+}
+
+/// The first of vertices with middles, one for each lane, to the weights of the cage's vertices.
+HWY_INLINE void put_vertices(const Surface& surface, double* phi, double* out, std::size_t stride) {
+  for (std::size_t q = 0; q < surface.quads.size(); ++q) {
+    const Lanes share = Lanes::load(phi + (surface.cage_vertices + q) * lanes) * Lanes(0.25);
+    for (const Index corner : surface.quads[q]) {
+      (Lanes::load(phi + corner * lanes) + share).store(phi + corner * lanes);
+    }
+  }
+  for (std::size_t c = 0; c < surface.cage_vertices; ++c) {
+    Lanes::load(phi + c * lanes).store_unaligned(out + c * stride);
+  }
+}
+
+/// The same for point i alone; `phi` has stride 1.
+inline void put_vertices_of(const Surface& surface, std::span<double> phi, double* weights,
+                            std::size_t stride, std::size_t i) {
+  surface.share_middles(phi);
+  for (std::size_t c = 0; c < surface.cage_vertices; ++c) {
+    weights[c * stride + i] = phi[c];
+  }
+}
+
 /// What the faces of a cage mean for a point that is not plainly inside.
 struct PointPlace {
   bool on_surface = false;
@@ -272,7 +313,9 @@ struct PointPlace {
   std::vector<std::pair<std::size_t, double>> through;
 };
 
-inline PointPlace place_of(const Surface& surface, const PointTerms& point) {
+/// \param touching  nearer than this, in diagonals, a point lies on the cage
+inline PointPlace place_of(const Surface& surface, const PointTerms& point,
+                           double touching = on_cage) {
   PointPlace place;
   std::size_t nearest = 0;
   double angle = 0;
@@ -280,7 +323,7 @@ inline PointPlace place_of(const Surface& surface, const PointTerms& point) {
     nearest = point.face_distance(f) < point.face_distance(nearest) ? f : nearest;
     angle += point.face(f).omega;
   }
-  if (point.touches(nearest)) {
+  if (point.face_distance(nearest) < touching * surface.frame.scaled_diagonal()) {
     place.on_surface = true;
     double sum = 0;
     for (std::size_t i = 0; i < 3; ++i) {
