@@ -109,6 +109,7 @@ Status judge(const MeshArgument& model, const PolygonMesh& cage, const ValidateO
 Status compare(const MeshArgument& model, const cw_mesh_view* cages, const char* const* cage_names,
                std::size_t count, bool with_poses, const Progress& progress, char** out) {
   const ModelVolume volume = model_volume(model.triangles());
+  const CoordinateSettings coordinates;
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = 0; i < count; ++i) {
     const std::string name =
@@ -120,7 +121,8 @@ Status compare(const MeshArgument& model, const cw_mesh_view* cages, const char*
     const Progress share = progress.part(static_cast<double>(i) / static_cast<double>(count),
                                          static_cast<double>(i + 1) / static_cast<double>(count));
     const Result<ComparedCage> compared =
-        compare_cage(name, cage->polygons(), model.triangles(), volume, with_poses, share);
+        compare_cage(name, cage->polygons(), model.triangles(), volume,
+                     with_poses ? &coordinates : nullptr, share);
     if (!compared) {
       return compared.error();
     }

@@ -2,7 +2,7 @@
 
 #include "io/source.h"
 #include "report/cage_words.h"
-#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/kinds.h>
 #include <cagewright/deform/match_pose.h>
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
@@ -109,19 +109,22 @@ Result<std::vector<FileNote>> deform_file(const DeformedFiles& files, const Prog
     return judged.error();
   }
   add(notes, *judged);
-  const Result<MeanValueSolver> solver = MeanValueSolver::create(rest, {.allow_open = true});
-  if (!solver) {
-    return Error{solver.error().code, files.cage.string() + ": " + solver.error().message};
+  CoordinateSettings settings;
+  settings.allow_open = true;
+  const auto coordinates = prepare_coordinates(rest, settings, progress.part(0.3, 0.4));
+  if (!coordinates) {
+    return Error{coordinates.error().code,
+                 files.cage.string() + ": " + coordinates.error().message};
   }
   const std::vector<std::vector<Vec3>> poses = {pose->positions};
-  const Result<StreamedPoses> moved = deform_streaming(
-      *solver, rest.positions, poses, model->mesh().positions, progress.part(0.3, 0.95));
+  const Result<StreamedPoses> moved =
+      deform_streaming(**coordinates, poses, model->mesh().positions, progress.part(0.4, 0.95));
   if (!moved) {
     return moved.error();
   }
-  if (moved->undefined > 0) {
+  if (moved->counts.undefined > 0) {
     notes.push_back({"without_weights", files.cage.string() + ": " +
-                                            counted(moved->undefined, "model vertex") +
+                                            counted(moved->counts.undefined, "model vertex") +
                                             " without weights: left at rest"});
   }
   const std::vector<Vec3>& positions = moved->positions.front();

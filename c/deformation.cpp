@@ -3,7 +3,7 @@
 #include "deform_file.h"
 #include "handles.h"
 
-#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/kinds.h>
 #include <cagewright/deform/deformer.h>
 
 #include <algorithm>
@@ -20,41 +20,29 @@ struct cw_deformer {
 
 namespace {
 
-/// A kind of coordinates by name, and its settings: "quads=diagonal".
-Result<MeanValueOptions> coordinates_named(const char* kind, const char* settings) {
-  if (kind != nullptr && std::string_view(kind) != "mean_value") {
-    return Error{ErrorCode::invalid_option,
-                 std::string(kind) + " is no kind of coordinates; there are mean_value"};
-  }
-  MeanValueOptions options;
-  const std::string_view text = settings != nullptr ? settings : "";
-  if (text == "quads=diagonal") {
-    options.quads = QuadTreatment::diagonal;
-  } else if (!text.empty() && text != "quads=center") {
-    return Error{ErrorCode::invalid_option,
-                 std::string(text) + " is no setting of mean_value; there are quads=center and "
-                                     "quads=diagonal"};
-  }
-  return options;
+/// A kind of coordinates by name, and its settings: "quads=diagonal outside=rest".
+Result<CoordinateSettings> coordinates_named(const char* kind, const char* settings) {
+  return CoordinateSettings::parse(kind != nullptr ? kind : CoordinateSettings().kind().name,
+                                   settings != nullptr ? settings : "");
 }
 
 /// Rows of the caller's from tiles of ours.
 void store(const Weights& weights, double* rows, std::size_t row) {
   for (std::size_t p = 0; p < weights.points(); ++p) {
-    for (std::size_t c = 0; c < weights.cage_vertices(); ++c) {
-      rows[p * row + c] = weights.at(p, c);
+    for (std::size_t k = 0; k < weights.columns(); ++k) {
+      rows[p * row + k] = weights.at(p, k);
     }
   }
 }
 
-Status solve(const MeanValueSolver& solver, std::span<const Vec3> points, double* weights,
+Status solve(const Coordinates& coordinates, std::span<const Vec3> points, double* weights,
              std::size_t row, const Progress& progress) {
   // Some at a time: the matrix stands in memory once, in the caller's.
   constexpr std::size_t some = 16 * Weights::tile_points;
   const auto count = static_cast<double>(points.size());
   for (std::size_t first = 0; first < points.size(); first += some) {
     const std::size_t now = std::min(some, points.size() - first);
-    const auto solved = solve_all<double>(solver, points.subspan(first, now),
+    const auto solved = solve_all<double>(coordinates, points.subspan(first, now),
                                           progress.part(static_cast<double>(first) / count,
                                                         static_cast<double>(first + now) / count));
     if (!solved) {
@@ -79,7 +67,7 @@ Result<WeightStorage> storage_of(cw_storage storage) {
 
 Status bind(const MeshArgument& model, const MeshArgument& cage, const cw_deformer_options& given,
             const Progress& progress, cw_deformer** out) {
-  Result<MeanValueOptions> coordinates = coordinates_named(given.coordinates, given.settings);
+  Result<CoordinateSettings> coordinates = coordinates_named(given.coordinates, given.settings);
   if (!coordinates) {
     return coordinates.error();
   }
@@ -109,7 +97,7 @@ cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* p
                        const cw_mesh_view* cage, const cw_control* control, double* weights,
                        size_t row, cw_error** error) {
   return call(error, control, [&](const Progress& progress) -> Status {
-    const Result<MeanValueOptions> options = coordinates_named(kind, settings);
+    const Result<CoordinateSettings> options = coordinates_named(kind, settings);
     if (!options) {
       return options.error();
     }
@@ -121,12 +109,39 @@ cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* p
     if (!mesh) {
       return mesh.error();
     }
-    const Result<MeanValueSolver> solver = MeanValueSolver::create(mesh->polygons(), *options);
-    if (!solver) {
-      return solver.error();
+    const auto coordinates = prepare_coordinates(mesh->polygons(), *options, progress.part(0, 0.2));
+    if (!coordinates) {
+      return coordinates.error();
     }
-    return solve(*solver, given->view(), weights, row != 0 ? row : solver->cage_vertices(),
-                 progress);
+    const std::size_t columns = (*coordinates)->columns();
+    if (row != 0 && row < columns) {
+      return Error{ErrorCode::invalid_option, "a row has " + std::to_string(columns) +
+                                                  " weights, and does not fit into " +
+                                                  std::to_string(row)};
+    }
+    return solve(**coordinates, given->view(), weights, row != 0 ? row : columns,
+                 progress.part(0.2, 1));
+  });
+}
+
+cw_code cw_coordinate_columns(const char* kind, const char* settings, const cw_mesh_view* cage,
+                              size_t* columns, cw_error** error) {
+  *columns = 0;
+  return call(error, [&]() -> Status {
+    const Result<CoordinateSettings> options = coordinates_named(kind, settings);
+    if (!options) {
+      return options.error();
+    }
+    const Result<MeshArgument> mesh = MeshArgument::of(cage, "the cage");
+    if (!mesh) {
+      return mesh.error();
+    }
+    const auto rule = options->kind().rule(mesh->polygons(), *options);
+    if (!rule) {
+      return rule.error();
+    }
+    *columns = (*rule)->columns();
+    return success();
   });
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstdio>
 #include <string_view>
+#include <utility>
 
 namespace cagewright::cli {
 Error about_file(const std::string& path, const Error& error) {
@@ -18,11 +19,7 @@ Error about_file(const std::string& path, const Error& error) {
 void add_binding_options(CLI::App& command, BindingOptions& options) {
   command.add_option("model", options.model, "The model")->required();
   command.add_option("cage", options.cage, "Its cage at rest: closed, round the model")->required();
-  command
-      .add_option("--quads", options.quads,
-                  "What the cage is inside a quad: four triangles round its center, or two along "
-                  "its diagonal")
-      ->check(CLI::IsMember({"center", "diagonal"}));
+  add_coordinate_options(command, options.coordinates);
   command.add_flag("--strict", options.strict,
                    "Stop with exit code 1 unless the cage is valid for the model; else only warn");
   add_pose_option(command, options.choice);
@@ -66,22 +63,26 @@ int fail_of_judge(const Error& error) {
   return error.code == ErrorCode::no_valid_cage ? found_faults : exit_code;
 }
 
-Result<MeanValueSolver> make_solver(const PolygonMesh& cage, const BindingOptions& options) {
-  Result<MeanValueSolver> solver = MeanValueSolver::create(
-      cage, {.quads = options.quads == "diagonal" ? QuadTreatment::diagonal : QuadTreatment::center,
-             .allow_open = true});
-  return solver ? std::move(solver) : about_file(options.cage, solver.error());
+Result<std::shared_ptr<const Coordinates>> make_coordinates(const PolygonMesh& cage,
+                                                            const CoordinateSettings& settings,
+                                                            const BindingOptions& options,
+                                                            const Session& session) {
+  CoordinateSettings permissive = settings;
+  permissive.allow_open = true;
+  auto coordinates = prepare_coordinates(cage, permissive, session.progress());
+  return coordinates ? std::move(coordinates) : about_file(options.cage, coordinates.error());
 }
 
-void warn_of_points(const std::string& cage, std::size_t on_surface, std::size_t undefined) {
+void warn_of_points(const std::string& cage, const PointCounts& counts) {
   const auto warn = [&](std::size_t count, const char* what) {
     if (count > 0) {
       std::fprintf(stderr, "cagewright: warning: %s: %zu model %s %s\n", cage.c_str(), count,
                    count == 1 ? "vertex" : "vertices", what);
     }
   };
-  warn(on_surface, "on the cage: only the face there moves them");
-  warn(undefined, "without weights: left at rest");
+  warn(counts.on_surface, "on the cage: only the face there moves them");
+  warn(counts.undefined, "without weights: left at rest");
+  warn(counts.outside, "outside the cage, where the coordinates are not defined by themselves");
 }
 
 } // namespace cagewright::cli

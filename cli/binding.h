@@ -2,13 +2,14 @@
 /// What the commands bind and deform share: a model, a cage at rest, and whether they fit.
 #pragma once
 
+#include "coordinate_options.h"
 #include "model_choice.h"
 #include "session.h"
 
-#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/coordinates.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
-#include <cstddef>
+#include <memory>
 #include <string>
 
 namespace cagewright::cli {
@@ -17,7 +18,7 @@ namespace cagewright::cli {
 struct BindingOptions {
   std::string model;
   std::string cage;
-  std::string quads = "center";
+  CoordinateArguments coordinates;
   bool strict = false;
   ModelChoice choice;
 };
@@ -25,8 +26,8 @@ struct BindingOptions {
 /// The error, with the file it is about in front.
 Error about_file(const std::string& path, const Error& error);
 
-/// Declares the arguments MODEL and CAGE and the options --quads, --strict, --pose,
-/// --only and --cage-object.
+/// Declares the arguments MODEL and CAGE and the options of coordinates, --strict,
+/// --pose, --only and --cage-object.
 void add_binding_options(CLI::App& command, BindingOptions& options);
 
 Result<ModelAndCage> read_model_and_cage(const BindingOptions& options);
@@ -39,9 +40,12 @@ Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Se
 int fail_of_judge(const Error& error);
 
 /// The cage ready for binding; it may be open, of which judge() has warned.
-Result<MeanValueSolver> make_solver(const PolygonMesh& cage, const BindingOptions& options);
+Result<std::shared_ptr<const Coordinates>> make_coordinates(const PolygonMesh& cage,
+                                                            const CoordinateSettings& settings,
+                                                            const BindingOptions& options,
+                                                            const Session& session);
 
 /// Says on stderr how many model vertices lie on the cage or stay at rest, if any.
-void warn_of_points(const std::string& cage, std::size_t on_surface, std::size_t undefined);
+void warn_of_points(const std::string& cage, const PointCounts& counts);
 
 } // namespace cagewright::cli

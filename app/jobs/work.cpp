@@ -176,16 +176,16 @@ Result<std::vector<FileNote>> write_shape(const Model& model, std::span<const Ve
 Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress) {
-  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage_at_rest);
-  if (!solver) {
-    return solver.error();
+  const auto coordinates = prepare_coordinates(cage_at_rest, {}, progress.part(0, 0.2));
+  if (!coordinates) {
+    return coordinates.error();
   }
   std::vector<std::vector<Vec3>> poses;
   for (const ModelOutput& output : outputs) {
     poses.push_back(*output.cage);
   }
-  const Result<StreamedPoses> moved = deform_streaming(*solver, cage_at_rest.positions, poses,
-                                                       model.mesh.positions, progress.part(0, 0.8));
+  const Result<StreamedPoses> moved =
+      deform_streaming(**coordinates, poses, model.mesh.positions, progress.part(0.2, 0.8));
   if (!moved) {
     return moved.error();
   }
@@ -223,12 +223,13 @@ Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMes
 
 Status export_weights(const Model& model, const PolygonMesh& cage,
                       const std::filesystem::path& path, const Progress& progress) {
-  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage);
-  if (!solver) {
-    return solver.error();
+  const CoordinateSettings settings;
+  const auto coordinates = prepare_coordinates(cage, settings, progress.part(0, 0.2));
+  if (!coordinates) {
+    return coordinates.error();
   }
-  const Result<BoundCounts> written =
-      bind_to_file(*solver, model.mesh.positions, cage, path, progress);
+  const Result<PointCounts> written = bind_to_file(**coordinates, settings, model.mesh.positions,
+                                                   cage, path, progress.part(0.2, 1));
   return written ? success() : Status(written.error());
 }
 

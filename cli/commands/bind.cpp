@@ -45,6 +45,10 @@ int run(const Options& options, const Session& session) {
   if (!format) {
     return fail(format.error());
   }
+  const Result<CoordinateSettings> settings = settings_of(options.binding.coordinates);
+  if (!settings) {
+    return fail(settings.error());
+  }
   const Result<ModelAndCage> meshes = read_model_and_cage(options.binding);
   if (!meshes) {
     return fail(meshes.error());
@@ -52,17 +56,18 @@ int run(const Options& options, const Session& session) {
   if (Status status = judge(*meshes, options.binding, session); !status) {
     return fail_of_judge(status.error());
   }
-  const Result<MeanValueSolver> solver = make_solver(meshes->cage, options.binding);
-  if (!solver) {
-    return fail(solver.error());
-  }
   const auto start = std::chrono::steady_clock::now();
-  const Result<BoundCounts> counts = bind_to_file(*solver, meshes->bound.mesh.positions, meshes->cage,
-                                                  options.output, *format, session.progress());
+  const auto coordinates = make_coordinates(meshes->cage, *settings, options.binding, session);
+  if (!coordinates) {
+    return fail(coordinates.error());
+  }
+  const Result<PointCounts> counts =
+      bind_to_file(**coordinates, *settings, meshes->bound.mesh.positions, meshes->cage,
+                   options.output, *format, session.progress());
   if (!counts) {
     return fail(counts.error());
   }
-  warn_of_points(options.binding.cage, counts->on_surface, counts->undefined);
+  warn_of_points(options.binding.cage, *counts);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   session.say(fmt::format("{}: {} model vertices bound to {} cage vertices in {:.2f} s\n",
                           options.output, meshes->bound.mesh.positions.size(),

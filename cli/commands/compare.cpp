@@ -1,3 +1,4 @@
+#include "coordinate_options.h"
 #include "json.h"
 #include "load.h"
 #include "model_choice.h"
@@ -29,6 +30,7 @@ struct Options {
   std::vector<std::string> cages;
   std::string json;
   bool no_poses = false;
+  CoordinateArguments coordinates;
   ModelChoice choice;
 };
 
@@ -120,6 +122,10 @@ std::string as_text(const std::vector<ComparedCage>& cages) {
 }
 
 int run(const Options& options, const Session& session) {
+  const Result<CoordinateSettings> settings = settings_of(options.coordinates);
+  if (!settings) {
+    return fail(settings.error());
+  }
   const Result<PolygonMesh> mesh = load_chosen(options.model, options.choice);
   if (!mesh) {
     return fail(mesh.error());
@@ -135,7 +141,7 @@ int run(const Options& options, const Session& session) {
       return fail(cage.error());
     }
     Result<ComparedCage> compared = compare_cage(
-        options.cages[i], *cage, model, volume, !options.no_poses,
+        options.cages[i], *cage, model, volume, options.no_poses ? nullptr : &*settings,
         progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
     if (!compared) {
       return fail(compared.error());
@@ -144,11 +150,9 @@ int run(const Options& options, const Session& session) {
   }
   progress(1, "done");
   if (!options.json.empty()) {
-    nlohmann::json json = {{"format", "cagewright-compare"},
-                           {"version", 1},
-                           {"model", options.model},
-                           {"notes", notes_as_json()},
-                           {"cages", nlohmann::json::array()}};
+    nlohmann::json json = {{"format", "cagewright-compare"}, {"version", 1},
+                           {"model", options.model},         {"coordinates", settings->kind().name},
+                           {"notes", notes_as_json()},       {"cages", nlohmann::json::array()}};
     for (const ComparedCage& cage : cages) {
       json["cages"].push_back(json_of(cage));
     }
@@ -171,6 +175,7 @@ void add_compare(CLI::App& app, Session& session) {
   command->add_option("cages", options->cages, "The cages")->required();
   add_pose_option(*command, options->choice);
   add_only_option(*command, options->choice, "The cages are for this object or group of the model");
+  add_coordinate_options(*command, options->coordinates);
   command->add_option("--json", options->json, "Write the same and more to this file as JSON");
   command->add_flag("--no-poses", options->no_poses,
                     "Leave out the bend and the twist, which take longest on large models");

@@ -163,9 +163,12 @@ std::vector<Vec3> with_part(const ModelAndCage& meshes, std::span<const Vec3> mo
 Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
                                                     const ModelAndCage& meshes,
                                                     std::span<const std::vector<Vec3>> poses) {
-  const Result<StoredWeights> stored = read_weights(options.weights);
+  Result<StoredWeights> stored = read_weights(options.weights);
   if (!stored) {
     return stored.error();
+  }
+  if (Status status = take_settings(options.binding.coordinates, *stored); !status) {
+    return about_file(options.weights, status.error());
   }
   // Made for all of the model, or for the part that is chosen now too.
   const bool for_all = stored->weights.points() == meshes.model().positions.size();
@@ -173,16 +176,18 @@ Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
   if (Status status = belongs_to(*stored, bound, meshes.cage); !status) {
     return about_file(options.weights, status.error());
   }
-  std::vector<Index> all(meshes.cage.positions.size());
+  const auto rule = stored->settings.kind().rule(meshes.cage, stored->settings);
+  if (!rule) {
+    return about_file(options.binding.cage, rule.error());
+  }
+  std::vector<Index> all((*rule)->columns());
   std::iota(all.begin(), all.end(), Index(0));
+  std::vector<Vec3> moves(all.size());
   std::vector<std::vector<Vec3>> results;
   for (const std::vector<Vec3>& pose : poses) {
-    std::vector<Vec3> displacements = pose;
-    for (std::size_t c = 0; c < pose.size(); ++c) {
-      displacements[c] -= meshes.cage.positions[c];
-    }
+    (*rule)->move(pose, moves);
     std::vector<Vec3> moved = bound;
-    move_points(stored->weights, all, displacements, bound, moved);
+    move_points(stored->weights, all, moves, bound, moved);
     results.push_back(for_all ? std::move(moved) : with_part(meshes, moved));
   }
   return results;
@@ -193,16 +198,20 @@ Result<std::vector<std::vector<Vec3>>> deform_directly(const Options& options,
                                                        const ModelAndCage& meshes,
                                                        std::span<const std::vector<Vec3>> poses,
                                                        const Session& session) {
-  const Result<MeanValueSolver> solver = make_solver(meshes.cage, options.binding);
-  if (!solver) {
-    return solver.error();
+  const Result<CoordinateSettings> settings = settings_of(options.binding.coordinates);
+  if (!settings) {
+    return settings.error();
   }
-  Result<StreamedPoses> streamed = deform_streaming(
-      *solver, meshes.cage.positions, poses, meshes.bound.mesh.positions, session.progress());
+  const auto coordinates = make_coordinates(meshes.cage, *settings, options.binding, session);
+  if (!coordinates) {
+    return coordinates.error();
+  }
+  Result<StreamedPoses> streamed =
+      deform_streaming(**coordinates, poses, meshes.bound.mesh.positions, session.progress());
   if (!streamed) {
     return streamed.error();
   }
-  warn_of_points(options.binding.cage, streamed->on_surface, streamed->undefined);
+  warn_of_points(options.binding.cage, streamed->counts);
   std::vector<std::vector<Vec3>> results;
   for (const std::vector<Vec3>& moved : streamed->positions) {
     results.push_back(with_part(meshes, moved));

@@ -6,6 +6,7 @@
 #include <cagewright/cage/generate.h>
 #include <cagewright/cage/option_table.h>
 #include <cagewright/coordinates/compact_weights.h>
+#include <cagewright/coordinates/kinds.h>
 #include <cagewright/coordinates/mean_value.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>

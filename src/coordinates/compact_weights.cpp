@@ -3,7 +3,6 @@
 #include "core/parallel.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <mutex>
@@ -13,6 +12,7 @@ namespace {
 
 constexpr std::size_t tile_points = FloatWeights::tile_points;
 constexpr std::size_t block_points = CompactWeights::block_tiles * tile_points;
+constexpr std::size_t at_once = 128; // points between two looks at the stop token
 constexpr double largest = 32767;
 
 std::size_t block_count(const CompactWeights& weights) {
@@ -21,7 +21,7 @@ std::size_t block_count(const CompactWeights& weights) {
 
 /// Rounds the tiles of a block, `from`, one after the other.
 void round_block(std::size_t block, std::span<const float> from, CompactWeights& compact) {
-  const std::size_t count = compact.cage_vertices();
+  const std::size_t count = compact.columns();
   const std::span<double> steps = std::span(compact.steps).subspan(block * count, count);
   std::ranges::fill(steps, 0.0);
   const std::size_t tile_size = tile_points * count;
@@ -41,12 +41,12 @@ void round_block(std::size_t block, std::span<const float> from, CompactWeights&
 
 } // namespace
 
-CompactWeights::CompactWeights(std::size_t points, std::size_t cage_vertices)
-    : tiles(points, cage_vertices), steps(block_count(*this) * cage_vertices) {}
+CompactWeights::CompactWeights(std::size_t points, std::size_t columns)
+    : tiles(points, columns), steps(block_count(*this) * columns) {}
 
 CompactWeights make_compact(const FloatWeights& weights) {
-  CompactWeights compact(weights.points(), weights.cage_vertices());
-  const std::size_t tile_size = tile_points * weights.cage_vertices();
+  CompactWeights compact(weights.points(), weights.columns());
+  const std::size_t tile_size = tile_points * weights.columns();
   parallel_for(0, block_count(compact), 1, [&](std::size_t block) {
     const std::size_t first = block * CompactWeights::block_tiles;
     const std::size_t tiles = std::min(CompactWeights::block_tiles, weights.tile_count() - first);
@@ -55,44 +55,42 @@ CompactWeights make_compact(const FloatWeights& weights) {
   return compact;
 }
 
-Result<SolvedCompactWeights> solve_compact(const MeanValueSolver& solver,
+Result<SolvedCompactWeights> solve_compact(const Coordinates& coordinates,
                                            std::span<const Vec3> points, const Progress& progress) {
-  SolvedCompactWeights solved{{points.size(), solver.cage_vertices()}};
-  const std::size_t tile_size = tile_points * solver.cage_vertices();
+  SolvedCompactWeights solved{{points.size(), coordinates.columns()}, {}};
+  const std::size_t tile_size = tile_points * coordinates.columns();
   const std::size_t blocks = block_count(solved.weights);
   std::mutex reporting;
   std::size_t finished = 0;
   parallel_for(0, blocks, 1, [&](std::size_t block) {
     const std::size_t first = block * block_points;
     const std::size_t count = std::min(block_points, points.size() - first);
-    FloatWeights exact(count, solver.cage_vertices());
-    int on_surface = 0;
-    int undefined = 0;
-    for (std::size_t i = 0; i < count; i += 16) {
+    FloatWeights exact(count, coordinates.columns());
+    PointCounts counts;
+    for (std::size_t i = 0; i < count; i += at_once) {
       if (progress.cancelled()) {
         return;
       }
-      const TileReport report =
-          solver.solve(points.subspan(first + i, std::min<std::size_t>(16, count - i)),
-                       exact.from(i), tile_points);
-      on_surface += std::popcount(report.on_surface);
-      undefined += std::popcount(report.undefined);
+      counts.add(solve_block(coordinates, points.subspan(first + i, std::min(at_once, count - i)),
+                             exact.from(i), tile_points));
     }
     exact.fill_up();
     round_block(block, {exact.tile(0).data(), exact.tile_count() * tile_size}, solved.weights);
     const std::scoped_lock lock(reporting);
-    solved.on_surface += static_cast<std::size_t>(on_surface);
-    solved.undefined += static_cast<std::size_t>(undefined);
+    solved.counts.add(counts);
     progress(static_cast<double>(++finished) / static_cast<double>(blocks), "bind");
   });
   if (progress.cancelled()) {
     return Error::cancelled();
   }
+  if (Status status = accept(coordinates, solved.counts); !status) {
+    return status.error();
+  }
   return solved;
 }
 
 double position_error_bound(const CompactWeights& weights, std::span<const Vec3> displacements) {
-  assert(displacements.size() == weights.cage_vertices());
+  assert(displacements.size() == weights.columns());
   double greatest = 0;
   for (std::size_t t = 0; t < weights.tile_count(); t += CompactWeights::block_tiles) {
     const std::span<const double> steps = weights.steps_of_tile(t);

@@ -1,15 +1,11 @@
 #include <cagewright/coordinates/mean_value.h>
 
 #include "coordinates/mean_value_tables.h"
-#include "core/parallel.h"
-#include <cagewright/mesh/measures.h>
-#include <cagewright/mesh/triangulate.h>
+#include "coordinates/surface.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,87 +15,6 @@ namespace {
 
 using Real = long double; // the tables are rounded once, when they are stored
 using RealVec3 = Eigen::Matrix<Real, 3, 1>;
-
-/// An edge of a triangle as it is looked up: smaller index first.
-struct EdgeUse {
-  Index from, to;
-  std::size_t triangle;
-  unsigned opposite; ///< which corner of the triangle
-  int direction;     ///< +1 when the triangle runs from -> to
-
-  [[nodiscard]] bool same_edge(const EdgeUse& other) const {
-    return from == other.from && to == other.to;
-  }
-};
-
-std::vector<EdgeUse> edge_uses(std::span<const Triangle> triangles) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (unsigned i = 0; i < 3; ++i) {
-      const Index a = triangles[t][(i + 1) % 3];
-      const Index b = triangles[t][(i + 2) % 3];
-      uses.push_back({std::min(a, b), std::max(a, b), t, i, a < b ? 1 : -1});
-    }
-  }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.from, a.to, a.triangle, a.opposite) <
-           std::tie(b.from, b.to, b.triangle, b.opposite);
-  });
-  return uses;
-}
-
-/// Edges whose triangles do not run along it as often one way as the other.
-std::size_t count_open(const std::vector<EdgeUse>& uses) {
-  std::size_t open = 0;
-  for (std::size_t i = 0; i < uses.size();) {
-    int balance = 0;
-    std::size_t j = i;
-    for (; j < uses.size() && uses[j].same_edge(uses[i]); ++j) {
-      balance += uses[j].direction;
-    }
-    open += balance != 0 && uses[i].from != uses[i].to ? 1 : 0;
-    i = j;
-  }
-  return open;
-}
-
-Status check(TriangleView cage, const MeanValueOptions& options) {
-  const auto invalid = [](std::string message) {
-    return Error{ErrorCode::invalid_cage, std::move(message)};
-  };
-  if (cage.triangles.empty()) {
-    return invalid("the cage has no faces");
-  }
-  for (std::size_t t = 0; t < cage.triangles.size(); ++t) {
-    for (const Index v : cage.triangles[t]) {
-      if (v >= cage.positions.size()) {
-        return invalid("triangle " + std::to_string(t) + " of the cage refers to vertex " +
-                       std::to_string(v) + ", but there are " +
-                       std::to_string(cage.positions.size()));
-      }
-      if (!cage.positions[v].allFinite()) {
-        return invalid("vertex " + std::to_string(v) + " of the cage is not finite");
-      }
-    }
-  }
-  if (!options.allow_open) {
-    const std::size_t open = count_open(edge_uses(cage.triangles));
-    if (open > 0) {
-      return invalid("the cage has " + std::to_string(open) + " open or inconsistent edge" +
-                     (open == 1 ? "" : "s"));
-    }
-  }
-  return success();
-}
-
-/// Triangles without area see nothing, and a triangle this thin has no plane to speak of: the
-/// faces beside it meet across its edges as if it were not there.
-bool is_degenerate(const RealVec3& a, const RealVec3& b, const RealVec3& c) {
-  const Real longest2 =
-      std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return (b - a).cross(c - a).norm() <= 1e-13L * longest2;
-}
 
 template <class T>
 typename MeanValueTables<T>::Affine affine(const RealVec3& gradient, const RealVec3& zero_at) {
@@ -244,8 +159,8 @@ MeanValueTables<T> make_tables(std::span<const Vec3> positions,
   }
   std::vector<Triangle> kept;
   for (const Triangle& t : triangles) {
-    if (!is_degenerate(rounded[t[0]].cast<Real>(), rounded[t[1]].cast<Real>(),
-                       rounded[t[2]].cast<Real>())) {
+    if (!is_degenerate<RealVec3>(rounded[t[0]].cast<Real>(), rounded[t[1]].cast<Real>(),
+                                 rounded[t[2]].cast<Real>())) {
       kept.push_back(t);
       tables.faces.push_back(make_face<T>(t, rounded));
     }
@@ -272,51 +187,19 @@ std::vector<std::uint8_t> used_vertices(TriangleView cage) {
   return used;
 }
 
-/// A cage whose quads are cut into four triangles round a vertex in their middle.
-struct CageWithMiddles {
-  TriangleMesh mesh;
-  std::vector<std::array<Index, 4>> quads;
-};
-
-CageWithMiddles add_middles(const PolygonMesh& cage) {
-  CageWithMiddles result;
-  result.mesh.positions = cage.positions;
-  const Triangulation triangulation = triangulate(cage);
-  for (std::size_t t = 0; t < triangulation.triangles.size(); ++t) {
-    if (cage.face(triangulation.face_of[t]).size() != 4) {
-      result.mesh.triangles.push_back(triangulation.triangles[t]);
-    }
-  }
-  for (std::size_t f = 0; f < cage.face_count(); ++f) {
-    const std::span<const Index> corners = cage.face(f);
-    if (corners.size() != 4) {
-      continue;
-    }
-    const auto middle = static_cast<Index>(result.mesh.positions.size());
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < 4; ++i) {
-      sum += cage.positions[corners[i]];
-      result.mesh.triangles.push_back({corners[i], corners[(i + 1) % 4], middle});
-    }
-    result.mesh.positions.emplace_back(sum / 4);
-    result.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
-  }
-  return result;
-}
-
 Result<std::shared_ptr<const MeanValueSolver::Tables>>
 prepare(TriangleView cage, std::size_t cage_vertices, std::vector<std::array<Index, 4>> quads,
         const MeanValueOptions& options) {
-  if (Status status = check(cage, options); !status) {
+  if (Status status = check_surface(cage, options.allow_open); !status) {
     return status.error();
   }
-  const Box3 box = bounding_box(cage);
-  if (!(box.diagonal().norm() > 0) || !std::isfinite(box.diagonal().norm())) {
-    return Error{ErrorCode::invalid_cage, "the cage has no extent"};
+  const Result<CageFrame> frame = frame_of(cage);
+  if (!frame) {
+    return frame.error();
   }
   auto tables = std::make_shared<MeanValueSolver::Tables>();
-  tables->center = box.center();
-  tables->scale = std::ldexp(1.0, -std::ilogb(box.diagonal().norm()) - 1);
+  tables->center = frame->center;
+  tables->scale = frame->scale;
   tables->cage_vertices = cage_vertices;
   tables->quads = std::move(quads);
   tables->used = used_vertices(cage);
@@ -373,39 +256,35 @@ TileReport solve_some(const MeanValueSolver::Tables& cage, std::span<const Vec3>
 
 } // namespace
 
+MeanValueSolver::MeanValueSolver(std::shared_ptr<const Tables> tables, std::span<const Vec3> cage)
+    : Coordinates(vertex_columns(cage)), tables_(std::move(tables)) {}
+
 Result<MeanValueSolver> MeanValueSolver::create(TriangleView cage,
                                                 const MeanValueOptions& options) {
   auto tables = prepare(cage, cage.positions.size(), {}, options);
   if (!tables) {
     return tables.error();
   }
-  return MeanValueSolver(*tables);
+  return MeanValueSolver(*tables, cage.positions);
 }
 
 Result<MeanValueSolver> MeanValueSolver::create(const PolygonMesh& cage,
                                                 const MeanValueOptions& options) {
-  if (options.quads == QuadTreatment::diagonal) {
-    return create(TriangleView(to_triangle_mesh(cage)), options);
-  }
-  CageWithMiddles cut = add_middles(cage);
+  TriangulatedCage cut = triangulated(cage, options.quads);
   auto tables = prepare(cut.mesh, cage.positions.size(), std::move(cut.quads), options);
   if (!tables) {
     return tables.error();
   }
-  return MeanValueSolver(*tables);
+  return MeanValueSolver(*tables, cage.positions);
 }
 
-std::size_t MeanValueSolver::cage_vertices() const {
-  return tables_->cage_vertices;
-}
-
-TileReport MeanValueSolver::solve(std::span<const Vec3> points, std::span<double> weights,
-                                  std::size_t stride) const {
+TileReport MeanValueSolver::solve_tile(std::span<const Vec3> points, std::span<double> weights,
+                                       std::size_t stride) const {
   return solve_some<double>(*tables_, points, weights, stride);
 }
 
-TileReport MeanValueSolver::solve(std::span<const Vec3> points, std::span<float> weights,
-                                  std::size_t stride) const {
+TileReport MeanValueSolver::solve_tile(std::span<const Vec3> points, std::span<float> weights,
+                                       std::size_t stride) const {
   return solve_some<double>(*tables_, points, weights, stride);
 }
 
@@ -413,47 +292,6 @@ TileReport MeanValueSolver::preview(std::span<const Vec3> points, std::span<floa
                                     std::size_t stride) const {
   return solve_some<float>(*tables_, points, weights, stride);
 }
-
-template <class T>
-Result<SolvedWeights<T>> solve_all(const MeanValueSolver& solver, std::span<const Vec3> points,
-                                   const Progress& progress) {
-  SolvedWeights<T> solved{{points.size(), solver.cage_vertices()}};
-  std::mutex reporting;
-  std::size_t finished = 0;
-  // A few hundred microseconds between two looks at the stop token.
-  constexpr std::size_t block = 128;
-  static_assert(WeightTiles<T>::tile_points % block == 0);
-  const std::size_t blocks = (points.size() + block - 1) / block;
-  parallel_for(0, blocks, 1, [&](std::size_t b) {
-    if (progress.cancelled()) {
-      return;
-    }
-    int on_surface = 0;
-    int undefined = 0;
-    const std::size_t end = std::min((b + 1) * block, points.size());
-    for (std::size_t first = b * block; first < end; first += 16) {
-      const TileReport report =
-          solver.solve(points.subspan(first, std::min<std::size_t>(16, end - first)),
-                       solved.weights.from(first), WeightTiles<T>::tile_points);
-      on_surface += std::popcount(report.on_surface);
-      undefined += std::popcount(report.undefined);
-    }
-    const std::scoped_lock lock(reporting);
-    solved.on_surface += static_cast<std::size_t>(on_surface);
-    solved.undefined += static_cast<std::size_t>(undefined);
-    progress(static_cast<double>(++finished) / static_cast<double>(blocks), "bind");
-  });
-  if (progress.cancelled()) {
-    return Error::cancelled();
-  }
-  solved.weights.fill_up();
-  return solved;
-}
-
-template Result<SolvedWeights<double>> solve_all(const MeanValueSolver&, std::span<const Vec3>,
-                                                 const Progress&);
-template Result<SolvedWeights<float>> solve_all(const MeanValueSolver&, std::span<const Vec3>,
-                                                const Progress&);
 
 namespace {
 
@@ -482,5 +320,44 @@ Result<Weights> mean_value_coordinates(const PolygonMesh& cage, std::span<const 
                                        const MeanValueOptions& options, const Progress& progress) {
   return coordinates_in(cage, points, options, progress);
 }
+
+namespace {
+
+constexpr std::array<const CoordinateOption*, 1> kind_options = {&quads_option};
+
+Result<std::shared_ptr<const Coordinates>>
+prepare_kind(const PolygonMesh& cage, const CoordinateSettings& settings, const Progress&) {
+  Result<MeanValueSolver> solver = MeanValueSolver::create(
+      cage, {.quads = static_cast<QuadTreatment>(settings.choice(quads_option)),
+             .allow_open = settings.allow_open});
+  if (!solver) {
+    return solver.error();
+  }
+  return std::shared_ptr<const Coordinates>(
+      std::make_shared<const MeanValueSolver>(*std::move(solver)));
+}
+
+Result<std::shared_ptr<const ColumnRule>> kind_rule(const PolygonMesh& cage,
+                                                    const CoordinateSettings&) {
+  return vertex_columns(cage.positions);
+}
+
+} // namespace
+
+constinit const CoordinateKind mean_value_kind = {
+    .name = "mean_value",
+    .idea = "each vertex counts by how much of the view from the point it fills, near ones more",
+    .quads = "center or diagonal",
+    .sign = "positive and negative",
+    .reproduces = "affine maps",
+    .on_cage = "interpolates",
+    .outside = "everywhere",
+    .locality = "global",
+    .made_by = "closed form",
+    .cost = "6 ns a point and triangle",
+    .options = kind_options,
+    .prepare = prepare_kind,
+    .rule = kind_rule,
+};
 
 } // namespace cagewright

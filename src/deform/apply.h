@@ -1,5 +1,5 @@
 /// \file
-/// Weights times displacements: where the points go.
+/// Weights times moves: where the points go.
 #pragma once
 
 #include <cagewright/coordinates/compact_weights.h>
@@ -11,22 +11,22 @@
 
 namespace cagewright {
 
-/// Moves points by the displacements of k of the cage's vertices:
-///     positions[p] = base[p] + sum over k of weight(p, cage_vertices[k]) * displacements[k],
+/// Moves points by those of n columns, such as the moves of vertices of the cage:
+///     positions[p] = base[p] + sum over k of weight(p, columns[k]) * moves[k],
 /// in double whatever the weights are stored as. `base` is the rest for a pose from scratch, or
 /// `positions` itself to go on from where they are.
 ///
-/// \param cage_vertices  k indices < C
-/// \param displacements  k vectors
-/// \param moved          empty, or for each 16 points the greatest change of a coordinate so far:
-///                       this call's is added
+/// \param columns  n indices < K
+/// \param moves    n vectors
+/// \param moved    empty, or for each 16 points the greatest change of a coordinate so far:
+///                 this call's is added
 ///
 /// On all cores of the calling arena; the result does not depend on their number. No memory is
-/// taken. Cost: bounded by reading k P weights, and the positions once.
+/// taken. Cost: bounded by reading n P weights, and the positions once.
 template <class T>
-void move_points(const WeightTiles<T>& weights, std::span<const Index> cage_vertices,
-                 std::span<const Vec3> displacements, std::span<const Vec3> base,
-                 std::span<Vec3> positions, std::span<double> moved = {});
+void move_points(const WeightTiles<T>& weights, std::span<const Index> columns,
+                 std::span<const Vec3> moves, std::span<const Vec3> base, std::span<Vec3> positions,
+                 std::span<double> moved = {});
 
 extern template void move_points(const WeightTiles<double>&, std::span<const Index>,
                                  std::span<const Vec3>, std::span<const Vec3>, std::span<Vec3>,
@@ -36,14 +36,14 @@ extern template void move_points(const WeightTiles<float>&, std::span<const Inde
                                  std::span<double>);
 
 /// The same with compact weights.
-void move_points(const CompactWeights& weights, std::span<const Index> cage_vertices,
-                 std::span<const Vec3> displacements, std::span<const Vec3> base,
-                 std::span<Vec3> positions, std::span<double> moved = {});
+void move_points(const CompactWeights& weights, std::span<const Index> columns,
+                 std::span<const Vec3> moves, std::span<const Vec3> base, std::span<Vec3> positions,
+                 std::span<double> moved = {});
 
-/// The same for up to 16 points whose weights MeanValueSolver::solve() has just written, 16 for
-/// each of the cage's vertices. At least one of them moves.
-void move_sixteen(std::span<const double> weights, std::span<const Index> cage_vertices,
-                  std::span<const Vec3> displacements, std::span<const Vec3> base,
+/// The same for up to 16 points whose weights Coordinates::solve() has just written, 16 for each
+/// column. At least one of them moves.
+void move_sixteen(std::span<const double> weights, std::span<const Index> columns,
+                  std::span<const Vec3> moves, std::span<const Vec3> base,
                   std::span<Vec3> positions);
 
 } // namespace cagewright

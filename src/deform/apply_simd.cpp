@@ -1,7 +1,7 @@
 // Sums of weights times displacements. Compiled once for each instruction set (Highway includes
 // this file again and again). Memory is the limit, so that accumulating in double costs nothing.
 //
-// Cage vertices are taken four at a time, so that memory is read in long runs: the runs of four of
+// Columns are taken four at a time, so that memory is read in long runs: the runs of four of
 // them in a tile, side by side. The sums of the tile's points wait meanwhile in the nearest cache.
 
 #include "deform/apply.h"
@@ -26,14 +26,14 @@
 namespace cagewright {
 namespace {
 
-/// The displaced cage vertices.
+/// The columns that move.
 struct Moves {
-  std::span<const Index> cage_vertices;
-  std::span<const Vec3> displacements;
-  std::span<const double> steps = {}; // of compact weights, for all of the cage's vertices
+  std::span<const Index> columns;
+  std::span<const Vec3> by;
+  std::span<const double> steps = {}; // of compact weights, for all columns
 };
 
-/// The weights of some points: those for cage vertex c begin at first[c * stride].
+/// The weights of some points: those for column k begin at first[k * stride].
 template <class T> struct WeightsIn {
   const T* first;
   const T* next; ///< those of the points after these, to be fetched ahead; or the same again
@@ -75,7 +75,7 @@ HWY_INLINE V load(D d, const std::int16_t* from) {
   return hn::PromoteTo(d, hn::PromoteTo(wide, hn::LoadU(hn::Rebind<std::int16_t, D>(), from)));
 }
 
-/// A few cage vertices: their weights, those to be fetched ahead, and how far they move.
+/// A few columns: their weights, those to be fetched ahead, and how far they move.
 template <class T> struct Columns {
   std::array<const T*, most_columns> weights;
   std::array<const T*, most_columns> ahead;
@@ -129,8 +129,8 @@ void finish_points(std::size_t first, const double* offsets, const TilePoints& p
   }
 }
 
-/// Adds what `count` cage vertices contribute to the sums of all points of a tile: 16 x, 16 y and
-/// 16 z for each 16 points. The first cage vertices start the sums, the last ones finish the
+/// Adds what `count` columns contribute to the sums of all points of a tile: 16 x, 16 y and
+/// 16 z for each 16 points. The first columns start the sums, the last ones finish the
 /// points.
 template <std::size_t count, class T>
 void add_columns(const Columns<T>& columns, bool is_first, bool is_last, double* sums,
@@ -179,7 +179,7 @@ void add_columns(const Columns<T>& columns, bool is_first, bool is_last, double*
 template <class T>
 void move_any(const WeightsIn<T>& weights, const Moves& moves, const TilePoints& points) {
   alignas(64) std::array<double, 3 * most_points> sums;
-  const std::size_t total = moves.cage_vertices.size();
+  const std::size_t total = moves.columns.size();
   for (std::size_t begin = 0; begin < total; begin += most_columns) {
     const std::size_t end = std::min(begin + most_columns, total);
     const bool is_first = begin == 0;
@@ -187,16 +187,16 @@ void move_any(const WeightsIn<T>& weights, const Moves& moves, const TilePoints&
     Columns<T> columns;
     for (std::size_t k = 0; k < most_columns; ++k) {
       const std::size_t here = std::min(begin + k, end - 1);
-      const std::size_t vertex = moves.cage_vertices[here];
-      columns.weights[k] = weights.first + vertex * weights.stride;
-      columns.by[k] = moves.displacements[here];
+      const std::size_t column = moves.columns[here];
+      columns.weights[k] = weights.first + column * weights.stride;
+      columns.by[k] = moves.by[here];
       if constexpr (std::is_integral_v<T>) {
-        columns.by[k] *= moves.steps[vertex];
+        columns.by[k] *= moves.steps[column];
       }
-      // The next cage vertices, or the first ones of the next points.
+      // The next columns, or the first ones of the next points.
       const std::size_t there = is_last ? std::min(k, total - 1) : std::min(end + k, total - 1);
       columns.ahead[k] =
-          (is_last ? weights.next : weights.first) + moves.cage_vertices[there] * weights.stride;
+          (is_last ? weights.next : weights.first) + moves.columns[there] * weights.stride;
     }
     switch (end - begin) {
     case 4:
@@ -251,15 +251,26 @@ void move_some(const WeightsIn<std::int16_t>& weights, const Moves& moves,
   HWY_DYNAMIC_DISPATCH(move_fixed)(weights, moves, points);
 }
 
+/// Nothing but the base moves the points.
+void copy_all(std::span<const Vec3> base, std::span<Vec3> positions, std::span<double> moved) {
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    if (!moved.empty()) {
+      const double change = (base[i] - positions[i]).cwiseAbs().maxCoeff();
+      moved[i / 16] = std::max(moved[i / 16], change);
+    }
+    positions[i] = base[i];
+  }
+}
+
 template <class T, class StepsOf>
 void move_all(const WeightTiles<T>& weights, const Moves& moves, std::span<const Vec3> base,
               std::span<Vec3> positions, std::span<double> moved, const StepsOf& steps_of) {
   constexpr std::size_t tile_points = WeightTiles<T>::tile_points;
-  assert(moves.cage_vertices.size() == moves.displacements.size());
+  assert(moves.columns.size() == moves.by.size());
   assert(base.size() == weights.points() && positions.size() == weights.points());
   assert(moved.empty() || moved.size() == (weights.points() + 15) / 16);
-  if (moves.cage_vertices.empty()) {
-    std::ranges::copy(base, positions.begin());
+  if (moves.columns.empty()) {
+    copy_all(base, positions, moved);
     return;
   }
   parallel_for(0, weights.tile_count(), 2, [&](std::size_t t) {
@@ -267,7 +278,7 @@ void move_all(const WeightTiles<T>& weights, const Moves& moves, std::span<const
     const std::size_t count = std::min(tile_points, weights.points() - first);
     const std::size_t next = std::min(t + 1, weights.tile_count() - 1);
     move_some(WeightsIn<T>{weights.tile(t).data(), weights.tile(next).data(), tile_points},
-              {moves.cage_vertices, moves.displacements, steps_of(t)},
+              {moves.columns, moves.by, steps_of(t)},
               {base.subspan(first, count), positions.subspan(first, count),
                moved.empty() ? nullptr : moved.data() + first / 16});
   });
@@ -276,10 +287,10 @@ void move_all(const WeightTiles<T>& weights, const Moves& moves, std::span<const
 } // namespace
 
 template <class T>
-void move_points(const WeightTiles<T>& weights, std::span<const Index> cage_vertices,
-                 std::span<const Vec3> displacements, std::span<const Vec3> base,
-                 std::span<Vec3> positions, std::span<double> moved) {
-  move_all(weights, {cage_vertices, displacements}, base, positions, moved,
+void move_points(const WeightTiles<T>& weights, std::span<const Index> columns,
+                 std::span<const Vec3> moves, std::span<const Vec3> base, std::span<Vec3> positions,
+                 std::span<double> moved) {
+  move_all(weights, {columns, moves}, base, positions, moved,
            [](std::size_t) { return std::span<const double>(); });
 }
 
@@ -288,18 +299,18 @@ template void move_points(const WeightTiles<double>&, std::span<const Index>, st
 template void move_points(const WeightTiles<float>&, std::span<const Index>, std::span<const Vec3>,
                           std::span<const Vec3>, std::span<Vec3>, std::span<double>);
 
-void move_points(const CompactWeights& weights, std::span<const Index> cage_vertices,
-                 std::span<const Vec3> displacements, std::span<const Vec3> base,
-                 std::span<Vec3> positions, std::span<double> moved) {
-  move_all(weights.tiles, {cage_vertices, displacements}, base, positions, moved,
+void move_points(const CompactWeights& weights, std::span<const Index> columns,
+                 std::span<const Vec3> moves, std::span<const Vec3> base, std::span<Vec3> positions,
+                 std::span<double> moved) {
+  move_all(weights.tiles, {columns, moves}, base, positions, moved,
            [&](std::size_t tile) { return weights.steps_of_tile(tile); });
 }
 
-void move_sixteen(std::span<const double> weights, std::span<const Index> cage_vertices,
-                  std::span<const Vec3> displacements, std::span<const Vec3> base,
+void move_sixteen(std::span<const double> weights, std::span<const Index> columns,
+                  std::span<const Vec3> moves, std::span<const Vec3> base,
                   std::span<Vec3> positions) {
   assert(base.size() <= 16 && positions.size() == base.size());
-  move_some(WeightsIn<double>{weights.data(), weights.data(), 16}, {cage_vertices, displacements},
+  move_some(WeightsIn<double>{weights.data(), weights.data(), 16}, {columns, moves},
             {base, positions, nullptr});
 }
 

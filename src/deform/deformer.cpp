@@ -10,14 +10,16 @@
 
 namespace cagewright {
 
-Deformer::Deformer(const PolygonMesh& model, std::span<const Vec3> cage_positions, Storage weights,
-                   const DeformerOptions& options, std::optional<NormalSlots> slots)
+Deformer::Deformer(const PolygonMesh& model, std::shared_ptr<const ColumnRule> rule,
+                   Storage weights, const DeformerOptions& options,
+                   std::optional<NormalSlots> slots)
     : weights_(std::move(weights)), rest_(model.positions), positions_(model.positions),
-      cage_rest_(cage_positions.begin(), cage_positions.end()), cage_(cage_rest_),
-      applied_cage_(cage_rest_), is_moved_(cage_.size(), 0), displacements_(cage_.size()),
+      rule_(std::move(rule)), cage_(rule_->cage_at_rest().begin(), rule_->cage_at_rest().end()),
+      is_moved_(cage_.size(), 0), applied_(rule_->columns(), Vec3::Zero()), wanted_(applied_),
       tolerance_(options.normal_tolerance * diagonal(model.positions)),
       has_normals_(options.normals) {
-  moved_.reserve(cage_.size());
+  changed_.reserve(applied_.size());
+  changes_.reserve(applied_.size());
   if (has_normals_) {
     const std::size_t tiles = (rest_.size() + 15) / 16;
     tile_travel_.assign(tiles, 0.0);
@@ -30,61 +32,58 @@ Deformer::Deformer(const PolygonMesh& model, std::span<const Vec3> cage_position
 Result<Deformer> Deformer::bind(const PolygonMesh& model, const PolygonMesh& cage,
                                 const DeformerOptions& options, std::optional<NormalSlots> slots,
                                 const Progress& progress) {
-  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage, options.coordinates);
-  if (!solver) {
-    return solver.error();
+  const auto coordinates = prepare_coordinates(cage, options.coordinates, progress.part(0, 0.5));
+  if (!coordinates) {
+    return coordinates.error();
   }
+  const Progress solving = progress.part(0.5, 1);
   const auto make = [&](auto solved, auto&& keep) -> Result<Deformer> {
     if (!solved) {
       return solved.error();
     }
-    Deformer deformer(model, cage.positions, keep(std::move(solved->weights)), options,
+    Deformer deformer(model, (*coordinates)->rule(), keep(std::move(solved->weights)), options,
                       std::move(slots));
-    deformer.unbound_ = solved->undefined;
+    deformer.unbound_ = solved->counts.undefined;
+    if ((*coordinates)->outside() == OutsideTreatment::rest) {
+      deformer.unbound_ += solved->counts.outside;
+    }
     return deformer;
   };
   switch (options.storage) {
   case WeightStorage::full:
-    return make(solve_all<double>(*solver, model.positions, progress),
+    return make(solve_all<double>(**coordinates, model.positions, solving),
                 [](Weights weights) { return Storage(std::move(weights)); });
   case WeightStorage::compact:
-    return make(solve_compact(*solver, model.positions, progress),
+    return make(solve_compact(**coordinates, model.positions, solving),
                 [](CompactWeights weights) { return Storage(std::move(weights)); });
   case WeightStorage::single:
     break;
   }
-  return make(solve_all<float>(*solver, model.positions, progress),
+  return make(solve_all<float>(**coordinates, model.positions, solving),
               [](FloatWeights weights) { return Storage(std::move(weights)); });
 }
 
 Result<Deformer> Deformer::from_weights(const PolygonMesh& model,
-                                        std::span<const Vec3> cage_positions, FloatWeights weights,
-                                        const DeformerOptions& options,
+                                        std::shared_ptr<const ColumnRule> rule,
+                                        FloatWeights weights, const DeformerOptions& options,
                                         std::optional<NormalSlots> slots) {
-  if (weights.points() != model.positions.size() ||
-      weights.cage_vertices() != cage_positions.size()) {
-    return Error{ErrorCode::mismatch,
-                 "the weights are for " + std::to_string(weights.points()) +
-                     " vertices and a cage of " + std::to_string(weights.cage_vertices()) +
-                     ", the model has " + std::to_string(model.positions.size()) +
-                     " and the cage " + std::to_string(cage_positions.size())};
+  if (weights.points() != model.positions.size() || weights.columns() != rule->columns()) {
+    return Error{ErrorCode::mismatch, "the weights are for " + std::to_string(weights.points()) +
+                                          " vertices and " + std::to_string(weights.columns()) +
+                                          " columns, the model has " +
+                                          std::to_string(model.positions.size()) +
+                                          " and the cage " + std::to_string(rule->columns())};
   }
   Storage storage = options.storage == WeightStorage::compact ? Storage(make_compact(weights))
                                                               : Storage(std::move(weights));
-  return Deformer(model, cage_positions, std::move(storage), options, std::move(slots));
-}
-
-void Deformer::mark(Index vertex) {
-  if (is_moved_[vertex] == 0) {
-    is_moved_[vertex] = 1;
-    moved_.push_back(vertex);
-  }
+  return Deformer(model, std::move(rule), std::move(storage), options, std::move(slots));
 }
 
 void Deformer::move_cage_vertex(Index vertex, const Vec3& to) {
   assert(vertex < cage_.size());
   cage_[vertex] = to;
-  mark(vertex);
+  moved_ += is_moved_[vertex] == 0 ? 1 : 0;
+  is_moved_[vertex] = 1;
 }
 
 void Deformer::set_cage(std::span<const Vec3> positions) {
@@ -95,42 +94,57 @@ void Deformer::set_cage(std::span<const Vec3> positions) {
 }
 
 void Deformer::update() {
-  if (moved_.empty()) {
+  if (moved_ == 0) {
     return;
   }
   move_model();
   if (has_normals_) {
     update_normals();
   }
-  for (const Index v : moved_) {
-    is_moved_[v] = 0;
-    applied_cage_[v] = cage_[v];
-  }
-  moved_.clear();
+  std::ranges::fill(is_moved_, std::uint8_t(0));
+  moved_ = 0;
 }
 
 void Deformer::move_model() {
-  std::sort(moved_.begin(), moved_.end()); // memory in order
+  rule_->move(cage_, wanted_);
   // A pose set as a whole starts from the rest, so that it does not depend on the way there.
-  const bool whole = moved_.size() == cage_.size();
-  const std::vector<Vec3>& from = whole ? cage_rest_ : applied_cage_;
-  const std::span<const Vec3> base = whole ? rest_ : positions_;
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    displacements_[k] = cage_[moved_[k]] - from[moved_[k]];
+  const bool whole = moved_ == cage_.size();
+  if (whole) {
+    std::ranges::fill(applied_, Vec3::Zero());
   }
-  const std::span<const Vec3> displacements = std::span(displacements_).first(moved_.size());
+  changed_.clear();
+  changes_.clear();
+  for (std::size_t k = 0; k < wanted_.size(); ++k) {
+    if (wanted_[k] != applied_[k]) {
+      changed_.push_back(static_cast<Index>(k));
+      changes_.emplace_back(wanted_[k] - applied_[k]);
+    }
+  }
+  const std::span<const Vec3> base = whole ? rest_ : positions_;
   std::visit(
       [&](const auto& weights) {
-        move_points(weights, moved_, displacements, base, positions_, tile_travel_);
+        move_points(weights, changed_, changes_, base, positions_, tile_travel_);
       },
       weights_);
+  applied_ = wanted_;
 }
 
 std::vector<float> Deformer::influence(std::span<const Index> cage_vertices) const {
+  std::vector<double> factors(rule_->columns(), 0.0);
+  for (const Index v : cage_vertices) {
+    rule_->add_influence(v, factors);
+  }
   // What a move of all of them by 1 along x does to points at the origin.
-  const std::vector<Vec3> along_x(cage_vertices.size(), Vec3::UnitX());
+  std::vector<Index> columns;
+  std::vector<Vec3> along_x;
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    if (factors[k] != 0) {
+      columns.push_back(static_cast<Index>(k));
+      along_x.emplace_back(factors[k], 0, 0);
+    }
+  }
   std::vector<Vec3> sums(rest_.size(), Vec3::Zero());
-  std::visit([&](const auto& weights) { move_points(weights, cage_vertices, along_x, sums, sums); },
+  std::visit([&](const auto& weights) { move_points(weights, columns, along_x, sums, sums); },
              weights_);
   std::vector<float> influence(sums.size());
   std::ranges::transform(sums, influence.begin(),
@@ -153,11 +167,7 @@ double Deformer::position_error_bound() const {
   if (compact == nullptr) {
     return 0;
   }
-  std::vector<Vec3> displacements(cage_.size());
-  for (std::size_t v = 0; v < cage_.size(); ++v) {
-    displacements[v] = cage_[v] - cage_rest_[v];
-  }
-  return cagewright::position_error_bound(*compact, displacements);
+  return cagewright::position_error_bound(*compact, applied_);
 }
 
 std::size_t Deformer::weight_bytes() const {

@@ -9,12 +9,19 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 
 namespace cagewright {
 namespace {
 
 constexpr Index none = std::numeric_limits<Index>::max();
+
+/// A MatchedPose while it is being found.
+struct Match {
+  std::vector<Vec3> positions;
+  std::string_view note;
+};
 
 /// Which vertices share an edge, and which a face.
 class Neighbors {
@@ -128,9 +135,9 @@ UsedNames used_names(const PolygonMesh& mesh) {
 
 /// The vertices of `rest` are those of `posed` by these names: C of the one, P of the other.
 /// \returns for each vertex at rest its place, if the edges agree.
-std::optional<MatchedPose> by_names(const PolygonMesh& rest, std::span<const Index> rest_names,
-                                    const PolygonMesh& posed, std::span<const Index> posed_names,
-                                    std::size_t count) {
+std::optional<Match> by_names(const PolygonMesh& rest, std::span<const Index> rest_names,
+                              const PolygonMesh& posed, std::span<const Index> posed_names,
+                              std::size_t count) {
   const Neighbors at_rest(rest, rest_names, count);
   const Neighbors moved(posed, posed_names, count);
   if (!at_rest.agree_with(moved) || !moved.agree_with(at_rest)) {
@@ -142,7 +149,7 @@ std::optional<MatchedPose> by_names(const PolygonMesh& rest, std::span<const Ind
       vertex_of[posed_names[v]] = v;
     }
   }
-  MatchedPose pose;
+  Match pose;
   for (Index v = 0; v < rest_names.size(); ++v) {
     const bool is_there = rest_names[v] != none && vertex_of[rest_names[v]] != none;
     pose.positions.push_back(is_there ? posed.positions[vertex_of[rest_names[v]]]
@@ -155,11 +162,11 @@ std::optional<MatchedPose> by_names(const PolygonMesh& rest, std::span<const Ind
 }
 
 /// Face by face and corner by corner: all corners of one vertex must have gone to one place.
-std::optional<MatchedPose> by_corners(const PolygonMesh& rest, const PolygonMesh& posed) {
+std::optional<Match> by_corners(const PolygonMesh& rest, const PolygonMesh& posed) {
   if (rest.face_count() != posed.face_count()) {
     return std::nullopt;
   }
-  MatchedPose pose{rest.positions, ""};
+  Match pose{rest.positions, ""};
   std::vector<char> known(rest.positions.size(), 0);
   std::vector<Index> first_of(posed.positions.size(), none);
   const WeldedPoints rest_points = weld_points(rest.positions);
@@ -202,7 +209,7 @@ std::vector<Index> numbers(std::size_t count) {
   return list;
 }
 
-std::optional<MatchedPose> match_by_number(const PolygonMesh& rest, const PolygonMesh& posed) {
+std::optional<Match> match_by_number(const PolygonMesh& rest, const PolygonMesh& posed) {
   const std::size_t count = rest.positions.size();
   if (posed.positions.size() == count) {
     return by_names(rest, numbers(count), posed, numbers(count), count);
@@ -217,8 +224,8 @@ std::optional<MatchedPose> match_by_number(const PolygonMesh& rest, const Polygo
   const WeldedPoints rest_points = weld_points(rest.positions);
   const WeldedPoints posed_points = weld_points(posed.positions);
   if (rest_points.positions.size() == posed_points.positions.size()) {
-    std::optional<MatchedPose> pose = by_names(rest, rest_points.point_of, posed,
-                                               posed_points.point_of, rest_points.positions.size());
+    std::optional<Match> pose = by_names(rest, rest_points.point_of, posed, posed_points.point_of,
+                                         rest_points.positions.size());
     if (pose) {
       pose->note = "its vertices are split or merged otherwise than those of the cage at rest; "
                    "they are told by their positions";
@@ -252,7 +259,7 @@ Error mismatch(const PolygonMesh& rest, const PolygonMesh& posed, const std::str
 
 Result<MatchedPose> match_pose(const PolygonMesh& rest, const PolygonMesh& posed,
                                const std::string& what) {
-  std::optional<MatchedPose> pose = match_by_number(rest, posed);
+  std::optional<Match> pose = match_by_number(rest, posed);
   for (const bool rest_is_cut : {false, true}) {
     for (const bool posed_is_cut : {false, true}) {
       if (!pose) {
@@ -263,7 +270,7 @@ Result<MatchedPose> match_pose(const PolygonMesh& rest, const PolygonMesh& posed
   if (!pose) {
     return mismatch(rest, posed, what);
   }
-  return *std::move(pose);
+  return MatchedPose{std::move(pose->positions), std::string(pose->note)};
 }
 
 } // namespace cagewright

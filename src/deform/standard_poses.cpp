@@ -3,12 +3,12 @@
 #include "core/maths.h"
 #include "core/parallel.h"
 #include "core/rotation.h"
-#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/coordinates.h>
 #include <cagewright/mesh/measures.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -16,7 +16,7 @@ namespace cagewright {
 namespace {
 
 constexpr double right_angle = std::numbers::pi / 2;
-constexpr std::size_t tile_points = 16; // at once, as MeanValueSolver takes them
+constexpr std::size_t tile_points = 16; // at once, as Coordinates takes them
 
 Vec3 bent(const PoseFrame& frame, const Vec3& p) {
   const Vec3 offset = p - frame.center;
@@ -42,7 +42,7 @@ Vec3 twisted(const PoseFrame& frame, const Vec3& p) {
 struct Sums {
   std::array<double, standard_poses.size()> sum = {};
   std::array<double, standard_poses.size()> max = {};
-  std::size_t undefined = 0;
+  PointCounts counts;
 };
 
 } // namespace
@@ -76,30 +76,33 @@ Vec3 posed(StandardPose pose, const PoseFrame& frame, const Vec3& p) {
 }
 
 Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> model,
-                               const Progress& progress) {
-  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage, {.allow_open = true});
-  if (!solver) {
-    return solver.error();
+                               CoordinateSettings settings, const Progress& progress) {
+  settings.allow_open = true;
+  const auto coordinates = prepare_coordinates(cage, settings, progress.part(0, 0.2));
+  if (!coordinates) {
+    return coordinates.error();
   }
+  const std::size_t columns = (*coordinates)->columns();
   const PoseFrame frame = pose_frame(model);
-  // Displacements of the cage's vertices: the weights then err least.
   std::array<std::vector<Vec3>, standard_poses.size()> moves;
   for (std::size_t k = 0; k < moves.size(); ++k) {
+    std::vector<Vec3> pose;
     for (const Vec3& c : cage.positions) {
-      moves[k].push_back(posed(standard_poses[k], frame, c) - c);
+      pose.push_back(posed(standard_poses[k], frame, c));
     }
+    moves[k].resize(columns);
+    (*coordinates)->rule()->move(pose, moves[k]);
   }
   const std::size_t tiles = (model.size() + tile_points - 1) / tile_points;
   const Sums sums = parallel_reduce_ordered(
       0, tiles, 16, Sums(),
       [&](std::size_t first, std::size_t last) {
         Sums found;
-        std::vector<double> weights(tile_points * solver->cage_vertices());
+        std::vector<double> weights(tile_points * columns);
         for (std::size_t t = first; t < last && !progress.cancelled(); ++t) {
           const auto points =
               model.subspan(t * tile_points, std::min(tile_points, model.size() - t * tile_points));
-          found.undefined +=
-              static_cast<std::size_t>(std::popcount(solver->solve(points, weights).undefined));
+          found.counts.add((*coordinates)->solve(points, weights));
           for (std::size_t k = 0; k < moves.size(); ++k) {
             for (std::size_t i = 0; i < points.size(); ++i) {
               Vec3 followed = points[i];
@@ -115,7 +118,7 @@ Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> mo
         return found;
       },
       [](Sums& all, const Sums& part) {
-        all.undefined += part.undefined;
+        all.counts.add(part.counts);
         for (std::size_t k = 0; k < all.sum.size(); ++k) {
           all.sum[k] += part.sum[k];
           all.max[k] = std::max(all.max[k], part.max[k]);
@@ -125,7 +128,8 @@ Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> mo
     return Error::cancelled();
   }
   PoseErrors errors;
-  errors.undefined = sums.undefined;
+  errors.undefined = sums.counts.undefined;
+  errors.outside = sums.counts.outside;
   const double unit = diagonal(model);
   for (std::size_t k = 0; k < moves.size(); ++k) {
     const double mean = sums.sum[k] / static_cast<double>(model.size());

@@ -21,29 +21,31 @@ namespace cagewright {
 namespace {
 
 constexpr std::int64_t current_version = 1;
-constexpr std::string_view mean_value_kind = "mean_value";
+constexpr const char* kind_name = "kind";
+constexpr const char* options_name = "options";
+constexpr const char* columns_name = "columns";
 constexpr std::size_t tile_points = FloatWeights::tile_points;
 constexpr std::size_t block_tiles = 8; // 4096 rows: a few megabytes
 
-/// The weights of up to 16 points to rows of a matrix.
-void copy_rows(std::span<const float> weights, std::size_t cage_vertices, std::size_t count,
+/// The weights of up to 64 points to rows of a matrix.
+constexpr std::size_t points_at_once = 64;
+void copy_rows(std::span<const float> weights, std::size_t columns, std::size_t count,
                float* rows) {
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < cage_vertices; ++c) {
-      rows[i * cage_vertices + c] = weights[c * 16 + i];
+    for (std::size_t k = 0; k < columns; ++k) {
+      rows[i * columns + k] = weights[k * points_at_once + i];
     }
   }
 }
 
 /// Rows of a matrix to a tile.
-void copy_tile(const float* rows, std::size_t cage_vertices, std::size_t count,
-               std::span<float> tile) {
+void copy_tile(const float* rows, std::size_t columns, std::size_t count, std::span<float> tile) {
   std::fill(tile.begin(), tile.end(), 0.0F);
   for (std::size_t first = 0; first < count; first += 16) { // as many rows as stay in the cache
     const std::size_t end = std::min(first + 16, count);
-    for (std::size_t c = 0; c < cage_vertices; ++c) {
+    for (std::size_t k = 0; k < columns; ++k) {
       for (std::size_t i = first; i < end; ++i) {
-        tile[c * tile_points + i] = rows[i * cage_vertices + c];
+        tile[k * tile_points + i] = rows[i * columns + k];
       }
     }
   }
@@ -51,8 +53,11 @@ void copy_tile(const float* rows, std::size_t cage_vertices, std::size_t count,
 
 /// Text as NumPy has it: four bytes a character.
 Status add_text(NpzWriter& file, std::string_view name, std::string_view text) {
-  const std::vector<std::uint32_t> characters(text.begin(), text.end());
-  if (Status s = file.begin(name, {"<U" + std::to_string(text.size()), {}}, 4 * text.size()); !s) {
+  std::vector<std::uint32_t> characters(text.begin(), text.end());
+  characters.resize(std::max<std::size_t>(1, characters.size())); // NumPy has no text of 0 bytes
+  if (Status s =
+          file.begin(name, {"<U" + std::to_string(characters.size()), {}}, 4 * characters.size());
+      !s) {
     return s;
   }
   if (Status s = file.write(std::as_bytes(std::span(characters))); !s) {
@@ -75,38 +80,45 @@ Status add_faces(NpzWriter& file, const PolygonMesh& cage) {
 }
 
 /// All but the weights.
-Status add_identity(NpzWriter& file, std::span<const Vec3> points, const PolygonMesh& cage) {
-  const std::span<const double> positions(cage.positions.data()->data(), 3 * cage.positions.size());
+Status add_identity(NpzWriter& file, const WeightsIdentity& identity) {
+  const std::vector<Vec3>& cage = identity.cage.positions;
   const std::int64_t version = current_version;
-  const std::uint64_t sum = checksum(points);
+  const std::uint64_t sum = checksum(identity.points);
   if (Status s = file.add("version", {"<i8", {}}, std::span(&version, 1)); !s) {
     return s;
   }
-  if (Status s = add_text(file, "kind", mean_value_kind); !s) {
-    return s;
+  for (const auto& [name, text] : {std::pair(kind_name, std::string(identity.settings.kind().name)),
+                                   {options_name, identity.settings.text()},
+                                   {columns_name, text_of(identity.rule.groups())}}) {
+    if (Status s = add_text(file, name, text); !s) {
+      return s;
+    }
   }
   if (Status s = file.add("model_checksum", {"<u8", {}}, std::span(&sum, 1)); !s) {
     return s;
   }
-  if (Status s = file.add("cage_positions", {"<f8", {cage.positions.size(), 3}}, positions); !s) {
+  if (Status s = file.add("cage_positions", {"<f8", {cage.size(), 3}},
+                          std::span(cage.data()->data(), 3 * cage.size()));
+      !s) {
     return s;
   }
-  return add_faces(file, cage);
+  return add_faces(file, identity.cage);
 }
 
 class NpzSink : public RowSink {
 public:
-  static Result<std::unique_ptr<RowSink>>
-  create(std::span<const Vec3> points, const PolygonMesh& cage, const std::filesystem::path& path) {
+  static Result<std::unique_ptr<RowSink>> create(const WeightsIdentity& identity,
+                                                 const std::filesystem::path& path) {
     Result<NpzWriter> file = NpzWriter::create(path);
     if (!file) {
       return file.error();
     }
-    if (Status s = add_identity(*file, points, cage); !s) {
+    if (Status s = add_identity(*file, identity); !s) {
       return s.error();
     }
-    const std::size_t width = cage.positions.size();
-    if (Status s = file->begin("weights", {"<f4", {points.size(), width}}, sizeof(float)); !s) {
+    if (Status s = file->begin(
+            "weights", {"<f4", {identity.points.size(), identity.rule.columns()}}, sizeof(float));
+        !s) {
       return s.error();
     }
     return std::unique_ptr<RowSink>(new NpzSink(*std::move(file)));
@@ -125,27 +137,19 @@ private:
 };
 
 /// The rows of the points, one after the other.
-BoundCounts solve_rows(const MeanValueSolver& solver, std::span<const Vec3> points,
+PointCounts solve_rows(const Coordinates& coordinates, std::span<const Vec3> points,
                        std::span<float> rows) {
-  const std::size_t width = solver.cage_vertices();
+  const std::size_t width = coordinates.columns();
   return parallel_reduce_ordered(
-      0, points.size(), 64, BoundCounts(),
+      0, points.size(), points_at_once, PointCounts(),
       [&](std::size_t begin, std::size_t end) {
-        AlignedBuffer<float> weights(16 * width);
-        BoundCounts counts;
-        for (std::size_t first = begin; first < end; first += 16) {
-          const std::size_t count = std::min<std::size_t>(16, end - first);
-          const TileReport report = solver.solve(points.subspan(first, count), weights.span());
-          copy_rows(weights.span(), width, count, rows.data() + first * width);
-          counts.on_surface += static_cast<std::size_t>(std::popcount(report.on_surface));
-          counts.undefined += static_cast<std::size_t>(std::popcount(report.undefined));
-        }
+        AlignedBuffer<float> weights(points_at_once * width);
+        const PointCounts counts = solve_block(coordinates, points.subspan(begin, end - begin),
+                                               weights.span(), points_at_once);
+        copy_rows(weights.span(), width, end - begin, rows.data() + begin * width);
         return counts;
       },
-      [](BoundCounts& a, const BoundCounts& b) {
-        a.on_surface += b.on_surface;
-        a.undefined += b.undefined;
-      });
+      [](PointCounts& a, const PointCounts& b) { a.add(b); });
 }
 
 Result<PolygonMesh> read_cage(NpzReader& file) {
@@ -210,7 +214,7 @@ Result<std::string> read_text(NpzReader& file, std::string_view name) {
     return array.error();
   }
   const std::string& type = array->header().type;
-  if (type.substr(0, 2) != "<U" || type.size() > 4 || array->header().count() != 1) {
+  if (type.substr(0, 2) != "<U" || type.size() > 5 || array->header().count() != 1) {
     return file.unexpected(name, array->header());
   }
   std::vector<std::uint32_t> characters(static_cast<std::size_t>(std::atoi(type.c_str() + 2)));
@@ -221,35 +225,35 @@ Result<std::string> read_text(NpzReader& file, std::string_view name) {
   for (const std::uint32_t c : characters) {
     text += c < 128 ? static_cast<char>(c) : '?';
   }
+  text.resize(std::min(text.find('\0'), text.size())); // NumPy fills up with zeros
   return text;
 }
 
-Result<FloatWeights> read_matrix(NpzReader& file, std::size_t cage_vertices) {
+Result<FloatWeights> read_matrix(NpzReader& file, std::size_t columns) {
   Result<NpzReader::Array> array = file.array("weights");
   if (!array) {
     return array.error();
   }
   const NpyHeader& header = array->header();
-  if (header.type != "<f4" || header.shape.size() != 2 || header.shape[1] != cage_vertices) {
+  if (header.type != "<f4" || header.shape.size() != 2 || header.shape[1] != columns) {
     return file.unexpected("weights", header);
   }
   const std::uint64_t points = header.shape[0];
   if (array->remaining() / sizeof(float) != header.count()) {
     return file.unexpected("weights", header);
   }
-  FloatWeights weights(points, cage_vertices);
-  std::vector<float> rows(block_tiles * tile_points * cage_vertices);
+  FloatWeights weights(points, columns);
+  std::vector<float> rows(block_tiles * tile_points * columns);
   for (std::size_t first = 0; first < weights.tile_count(); first += block_tiles) {
     const std::size_t tiles = std::min(block_tiles, weights.tile_count() - first);
     const std::size_t begin = first * tile_points;
     const std::size_t count = std::min(tiles * tile_points, points - begin);
-    if (Status s =
-            array->read(std::as_writable_bytes(std::span(rows).first(count * cage_vertices)));
+    if (Status s = array->read(std::as_writable_bytes(std::span(rows).first(count * columns)));
         !s) {
       return s.error();
     }
     parallel_for(0, tiles, 1, [&](std::size_t t) {
-      copy_tile(rows.data() + t * tile_points * cage_vertices, cage_vertices,
+      copy_tile(rows.data() + t * tile_points * columns, columns,
                 std::min(tile_points, count - t * tile_points), weights.tile(first + t));
     });
   }
@@ -275,34 +279,36 @@ Result<FileBytes> read_start(const std::filesystem::path& path) {
   return FileBytes(std::string_view(start.data(), count));
 }
 
-/// Whether weights reproduce the points from the cage at rest, as all coordinates do.
-Status gives(const FloatWeights& weights, std::span<const Vec3> points,
-             std::span<const Vec3> cage) {
+/// Whether weights reproduce the points from the cage at rest, as most coordinates do.
+Status gives(const FloatWeights& weights, std::span<const Vec3> points, const ColumnRule& rule) {
   // Of the cage's size, and of the magnitude of the weights, which far outside is large: floats,
   // and some digits lost on the way.
   constexpr double tolerance = 1e-4;
-  if (weights.cage_vertices() != cage.size()) {
-    return Error{ErrorCode::mismatch, "the weights are for a cage of " +
-                                          std::to_string(weights.cage_vertices()) +
-                                          " vertices, but this one has " +
-                                          std::to_string(cage.size()) + "; bind the model again"};
+  if (weights.columns() != rule.columns()) {
+    return Error{ErrorCode::mismatch, "the weights have " + std::to_string(weights.columns()) +
+                                          " columns, but such weights for this cage of " +
+                                          std::to_string(rule.cage_at_rest().size()) +
+                                          " vertices have " + std::to_string(rule.columns()) +
+                                          "; bind the model again"};
+  }
+  const std::vector<Vec3> from = rule.reproduced_from();
+  if (from.empty()) {
+    return success();
   }
   Box3 box;
-  for (const Vec3& p : cage) {
+  for (const Vec3& p : rule.cage_at_rest()) {
     box.extend(p);
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     Vec3 sum = Vec3::Zero();
-    double total = 0;
     double magnitude = 0;
-    for (std::size_t c = 0; c < cage.size(); ++c) {
-      const double weight = weights.at(i, c);
-      sum += weight * cage[c];
-      total += weight;
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      const double weight = weights.at(i, k);
+      sum += weight * from[k];
       magnitude += std::abs(weight);
     }
     const double allowed = tolerance * box.sizes().norm() * std::max(1.0, magnitude);
-    const bool has_weights = total != 0; // else it stays at rest
+    const bool has_weights = magnitude != 0; // else it stays at rest
     if (has_weights && !((sum - points[i]).norm() <= allowed)) {
       return Error{ErrorCode::mismatch, "the weights are for another model or cage: they do not "
                                         "give its vertex " +
@@ -313,6 +319,47 @@ Status gives(const FloatWeights& weights, std::span<const Vec3> points,
 }
 
 } // namespace
+
+std::string text_of(const std::vector<ColumnGroup>& groups) {
+  std::string text;
+  for (const ColumnGroup& group : groups) {
+    text += text.empty() ? "" : " ";
+    text += std::string(group.name) + '=' + std::to_string(group.count);
+  }
+  return text;
+}
+
+Result<CoordinateSettings> settings_of_file(std::string_view kind, std::string_view options,
+                                            const std::string& name) {
+  if (find_coordinate_kind(kind) == nullptr) {
+    return Error{ErrorCode::unsupported, name + ": weights of unknown kind '" +
+                                             one_line(std::string(kind), 40) +
+                                             "'; this program has " + names_of_coordinate_kinds()};
+  }
+  Result<CoordinateSettings> settings = CoordinateSettings::parse(kind, options);
+  if (!settings) {
+    return Error{ErrorCode::unsupported, name + ": weights with options of another version (" +
+                                             one_line(std::string(options), 80) +
+                                             "); bind the model again"};
+  }
+  return settings;
+}
+
+Result<std::size_t> columns_of_file(const StoredWeights& stored, std::string_view columns,
+                                    const std::string& name) {
+  const auto rule = stored.settings.kind().rule(stored.cage, stored.settings);
+  if (!rule) {
+    return Error{ErrorCode::malformed, name + ": the cage in it is none: " + rule.error().message +
+                                           "; bind the model again"};
+  }
+  const std::string expected = text_of((*rule)->groups());
+  if (!columns.empty() && columns != expected) {
+    return Error{ErrorCode::malformed, name + ": its columns are " +
+                                           one_line(std::string(columns), 80) + ", not " +
+                                           expected + "; bind the model again"};
+  }
+  return (*rule)->columns();
+}
 
 std::uint64_t checksum(std::span<const Vec3> points) {
   std::uint64_t hash = 0x9e3779b97f4a7c15ULL ^ points.size();
@@ -340,24 +387,26 @@ std::optional<WeightsFormat> weights_format_of_name(const std::filesystem::path&
   return std::nullopt;
 }
 
-Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const Vec3> points,
-                                 const PolygonMesh& cage, const std::filesystem::path& path,
-                                 const Progress& progress) {
-  return bind_to_file(solver, points, cage, path, WeightsFormat::npz, progress);
+Result<PointCounts> bind_to_file(const Coordinates& coordinates, const CoordinateSettings& settings,
+                                 std::span<const Vec3> points, const PolygonMesh& cage,
+                                 const std::filesystem::path& path, const Progress& progress) {
+  return bind_to_file(coordinates, settings, points, cage, path, WeightsFormat::npz, progress);
 }
 
-Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const Vec3> points,
-                                 const PolygonMesh& cage, const std::filesystem::path& path,
-                                 WeightsFormat format, const Progress& progress) {
-  assert(cage.positions.size() == solver.cage_vertices());
-  const std::size_t width = solver.cage_vertices();
+Result<PointCounts> bind_to_file(const Coordinates& coordinates, const CoordinateSettings& settings,
+                                 std::span<const Vec3> points, const PolygonMesh& cage,
+                                 const std::filesystem::path& path, WeightsFormat format,
+                                 const Progress& progress) {
+  assert(cage.positions.size() == coordinates.rule()->cage_at_rest().size());
+  const std::size_t width = coordinates.columns();
+  const WeightsIdentity identity{settings, *coordinates.rule(), points, cage};
   Result<std::unique_ptr<RowSink>> sink = format == WeightsFormat::npz
-                                              ? NpzSink::create(points, cage, path)
-                                              : text_sink(format, points, cage, path);
+                                              ? NpzSink::create(identity, path)
+                                              : text_sink(format, identity, path);
   if (!sink) {
     return sink.error();
   }
-  BoundCounts counts;
+  PointCounts counts;
   std::vector<float> rows(std::min(points.size(), block_tiles * tile_points) * width);
   for (std::size_t first = 0; first < points.size(); first += block_tiles * tile_points) {
     if (progress.cancelled()) {
@@ -365,13 +414,14 @@ Result<BoundCounts> bind_to_file(const MeanValueSolver& solver, std::span<const 
     }
     const std::size_t count = std::min(block_tiles * tile_points, points.size() - first);
     const std::span<float> block = std::span(rows).first(count * width);
-    const BoundCounts more = solve_rows(solver, points.subspan(first, count), block);
-    counts.on_surface += more.on_surface;
-    counts.undefined += more.undefined;
+    counts.add(solve_rows(coordinates, points.subspan(first, count), block));
     if (Status s = (*sink)->rows(block); !s) {
       return s.error();
     }
     progress(static_cast<double>(first + count) / static_cast<double>(points.size()), "bind");
+  }
+  if (Status s = accept(coordinates, counts); !s) {
+    return s.error();
   }
   if (Status s = (*sink)->finish(); !s) {
     return s.error();
@@ -411,15 +461,20 @@ Result<StoredWeights> read_weights(const std::filesystem::path& path) {
                      ", but this program reads version " + std::to_string(current_version)};
   }
   StoredWeights stored;
-  Result<std::string> kind = read_text(*file, "kind");
+  const Result<std::string> kind = read_text(*file, kind_name);
   if (!kind) {
     return kind.error();
   }
-  if (*kind != mean_value_kind) {
-    return Error{ErrorCode::unsupported,
-                 path.string() + ": weights of unknown kind '" + *kind + "'"};
+  const Result<std::string> options =
+      file->has(options_name) ? read_text(*file, options_name) : std::string();
+  if (!options) {
+    return options.error();
   }
-  stored.kind = *std::move(kind);
+  Result<CoordinateSettings> settings = settings_of_file(*kind, *options, one_line(path.string()));
+  if (!settings) {
+    return settings.error();
+  }
+  stored.settings = *std::move(settings);
   Result<std::vector<std::uint64_t>> sum = file->read<std::uint64_t>("model_checksum", "<u8", 1);
   if (!sum) {
     return sum.error();
@@ -430,7 +485,16 @@ Result<StoredWeights> read_weights(const std::filesystem::path& path) {
     return cage.error();
   }
   stored.cage = *std::move(cage);
-  Result<FloatWeights> weights = read_matrix(*file, stored.cage.positions.size());
+  const Result<std::string> columns =
+      file->has(columns_name) ? read_text(*file, columns_name) : std::string();
+  if (!columns) {
+    return columns.error();
+  }
+  const Result<std::size_t> width = columns_of_file(stored, *columns, one_line(path.string()));
+  if (!width) {
+    return width.error();
+  }
+  Result<FloatWeights> weights = read_matrix(*file, *width);
   if (!weights) {
     return weights.error();
   }
@@ -449,7 +513,8 @@ Status belongs_to(const StoredWeights& stored, std::span<const Vec3> points,
                     ": bind it again");
   }
   if (!stored.has_identity) {
-    return gives(stored.weights, points, cage.positions);
+    const auto rule = stored.settings.kind().rule(cage, stored.settings);
+    return rule ? gives(stored.weights, points, **rule) : Status(rule.error());
   }
   if (stored.model_checksum != checksum(points)) {
     return mismatch("the weights are for another shape of the model, or its vertices in another "

@@ -19,11 +19,12 @@
 namespace cagewright {
 namespace {
 
-constexpr std::string_view mean_value_kind = "mean_value";
 constexpr std::string_view csv_mark = "# cagewright weights";
 constexpr std::string_view csv_end = "# end"; // without it a file that was cut off looks whole
 constexpr std::string_view json_mark = "cagewright-weights";
 constexpr std::string_view groups_mark = "cagewright-vertex-groups";
+constexpr std::string_view csv_options = "# options ";
+constexpr std::string_view csv_columns = "# columns ";
 constexpr int version = 1;
 
 void append_place(std::string& text, const Vec3& p, std::string_view between) {
@@ -49,17 +50,21 @@ private:
   std::size_t width_;
 };
 
-/// Lines "model_vertex,cage_vertex,weight" of all weights but zeros, after lines beginning with #
+/// Lines "model_vertex,column,weight" of all weights but zeros, after lines beginning with #
 /// that say what they are for.
 class CsvSink : public TextSink {
 public:
   using TextSink::TextSink;
 
-  Status begin(std::span<const Vec3> points, const PolygonMesh& cage) {
+  Status begin(const WeightsIdentity& identity) {
+    const PolygonMesh& cage = identity.cage;
     std::string text(csv_mark);
-    text += ", version " + std::to_string(version) + ", " + std::string(mean_value_kind) + "\n";
-    text +=
-        "# model " + std::to_string(points.size()) + ' ' + std::to_string(checksum(points)) + '\n';
+    text += ", version " + std::to_string(version) + ", " +
+            std::string(identity.settings.kind().name) + '\n';
+    text += std::string(csv_options) + identity.settings.text() + '\n';
+    text += std::string(csv_columns) + text_of(identity.rule.groups()) + '\n';
+    text += "# model " + std::to_string(identity.points.size()) + ' ' +
+            std::to_string(checksum(identity.points)) + '\n';
     for (const Vec3& p : cage.positions) {
       text += "# v ";
       append_place(text, p, " ");
@@ -72,7 +77,9 @@ public:
       }
       text += '\n';
     }
-    return write(text + "model_vertex,cage_vertex,weight\n");
+    return write(text + (identity.rule.columns() == cage.positions.size()
+                             ? "model_vertex,cage_vertex,weight\n"
+                             : "model_vertex,column,weight\n"));
   }
 
   Status rows(std::span<const float> block) override {
@@ -105,12 +112,15 @@ class JsonSink : public TextSink {
 public:
   using TextSink::TextSink;
 
-  Status begin(std::span<const Vec3> points, const PolygonMesh& cage) {
+  Status begin(const WeightsIdentity& identity) {
+    const PolygonMesh& cage = identity.cage;
     std::string text =
         "{\"format\": \"" + std::string(json_mark) + "\", \"version\": " + std::to_string(version) +
-        ", \"kind\": \"" + std::string(mean_value_kind) +
-        "\",\n \"model_vertices\": " + std::to_string(points.size()) + ", \"model_checksum\": \"" +
-        std::to_string(checksum(points)) + "\",\n \"cage_positions\": [";
+        ", \"kind\": \"" + std::string(identity.settings.kind().name) + "\", \"options\": \"" +
+        identity.settings.text() + "\", \"columns\": \"" + text_of(identity.rule.groups()) +
+        "\",\n \"model_vertices\": " + std::to_string(identity.points.size()) +
+        ", \"model_checksum\": \"" + std::to_string(checksum(identity.points)) +
+        "\",\n \"cage_positions\": [";
     for (std::size_t v = 0; v < cage.positions.size(); ++v) {
       text += v == 0 ? "[" : ", [";
       append_place(text, cage.positions[v], ", ");
@@ -223,9 +233,9 @@ public:
 };
 
 template <class Sink>
-Result<std::unique_ptr<RowSink>> begun(std::unique_ptr<Sink> sink, std::span<const Vec3> points,
-                                       const PolygonMesh& cage) {
-  if (Status status = sink->begin(points, cage); !status) {
+Result<std::unique_ptr<RowSink>> begun(std::unique_ptr<Sink> sink,
+                                       const WeightsIdentity& identity) {
+  if (Status status = sink->begin(identity); !status) {
     return status.error();
   }
   return std::unique_ptr<RowSink>(std::move(sink));
@@ -279,9 +289,11 @@ public:
 
   Result<StoredWeights> csv() const {
     StoredWeights stored;
-    stored.kind = mean_value_kind;
     Lines lines(bytes_);
     std::string_view line;
+    std::string kind;
+    std::string options;
+    std::string columns_text;
     std::size_t points = 0;
     bool has_model = false;
     while (lines.next(line) && line.starts_with('#')) {
@@ -302,19 +314,31 @@ public:
           face.push_back(v);
         }
         stored.cage.add_face(face);
-      } else if (line.starts_with(csv_mark) &&
-                 line.find(", version " + std::to_string(version) + ',') == line.npos) {
-        return Error{ErrorCode::unsupported,
-                     name_ + ": weights of another version; bind the model again"};
+      } else if (line.starts_with(csv_options)) {
+        options = line.substr(csv_options.size());
+      } else if (line.starts_with(csv_columns)) {
+        columns_text = line.substr(csv_columns.size());
+      } else if (line.starts_with(csv_mark)) {
+        const std::string expected =
+            std::string(csv_mark) + ", version " + std::to_string(version) + ", ";
+        if (!line.starts_with(expected)) {
+          return Error{ErrorCode::unsupported,
+                       name_ + ": weights of another version; bind the model again"};
+        }
+        kind = line.substr(expected.size());
       }
-    }
-    const std::size_t width = stored.cage.positions.size();
-    // Each row has a line at least, unless its vertex has no weights.
-    if (!has_model || !is_plausible(points, width, memory_numbers())) {
-      return damaged("it does not say what model and cage it is for");
     }
     if (Status status = check_faces(stored.cage); !status) {
       return status.error();
+    }
+    const Result<std::size_t> columns = set_kind(stored, kind, options, columns_text);
+    if (!columns) {
+      return columns.error();
+    }
+    const std::size_t width = *columns;
+    // Each row has a line at least, unless its vertex has no weights.
+    if (!has_model || !is_plausible(points, width, memory_numbers())) {
+      return damaged("it does not say what model and cage it is for");
     }
     stored.weights = FloatWeights(points, width);
     fill_zero(stored.weights);
@@ -329,8 +353,7 @@ public:
       }
       if (!take(line, row) || !take(line, column) || !take(line, weight) || !line.empty() ||
           row >= points || column >= width || !std::isfinite(weight)) {
-        return in_line(lines, "a line should have a vertex of the model, one of the cage and a "
-                              "weight");
+        return in_line(lines, "a line should have a vertex of the model, a column and a weight");
       }
       set(stored.weights, row, column, weight);
     }
@@ -348,7 +371,6 @@ public:
       return damaged("it should begin with the numbers of columns and rows");
     }
     StoredWeights stored;
-    stored.kind = mean_value_kind;
     stored.has_identity = false;
     stored.weights = FloatWeights(points, width);
     fill_zero(stored.weights);
@@ -415,6 +437,18 @@ private:
     weights.tile(row / height)[column * height + row % height] = static_cast<float>(weight);
   }
 
+  /// Takes the kind and its options. \returns the number of columns.
+  [[nodiscard]] Result<std::size_t> set_kind(StoredWeights& stored, std::string_view kind,
+                                             std::string_view options,
+                                             std::string_view columns) const {
+    Result<CoordinateSettings> settings = settings_of_file(kind, options, name_);
+    if (!settings) {
+      return settings.error();
+    }
+    stored.settings = *std::move(settings);
+    return columns_of_file(stored, columns, name_);
+  }
+
   [[nodiscard]] Status check_faces(const PolygonMesh& cage) const {
     for (std::size_t f = 0; f < cage.face_count(); ++f) {
       if (cage.face(f).size() < 3 ||
@@ -427,11 +461,6 @@ private:
 
   [[nodiscard]] Result<StoredWeights> stored_of(const nlohmann::json& json) const {
     StoredWeights stored;
-    stored.kind = json.at("kind").get<std::string>();
-    if (stored.kind != mean_value_kind) {
-      return Error{ErrorCode::unsupported,
-                   name_ + ": weights of unknown kind '" + one_line(stored.kind, 40) + "'"};
-    }
     const auto sum = json.at("model_checksum").get<std::string>();
     std::string_view digits = sum;
     if (!take(digits, stored.model_checksum)) {
@@ -448,7 +477,13 @@ private:
       return status.error();
     }
     const nlohmann::json& rows = json.at("weights");
-    const std::size_t width = stored.cage.positions.size();
+    const Result<std::size_t> columns =
+        set_kind(stored, json.at("kind").get<std::string>(), json.value("options", std::string()),
+                 json.value("columns", std::string()));
+    if (!columns) {
+      return columns.error();
+    }
+    const std::size_t width = *columns;
     if (!rows.is_array() || width == 0) {
       return damaged("it has no weights or no cage");
     }
@@ -475,13 +510,20 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<RowSink>> text_sink(WeightsFormat format, std::span<const Vec3> points,
-                                           const PolygonMesh& cage,
+Result<std::unique_ptr<RowSink>> text_sink(WeightsFormat format, const WeightsIdentity& identity,
                                            const std::filesystem::path& path) {
-  const std::size_t width = cage.positions.size();
+  const std::size_t width = identity.rule.columns();
+  const std::vector<ColumnGroup> groups = identity.rule.groups();
+  if (format == WeightsFormat::vertex_groups && width != identity.cage.positions.size()) {
+    return Error{ErrorCode::unsupported,
+                 one_line(path.string()) +
+                     ": groups of vertices have one weight for each vertex of the cage, but " +
+                     std::string(identity.settings.kind().name) + " coordinates have " +
+                     text_of(groups) + "; write .npz, or bind with coordinates of vertices alone"};
+  }
   const bool by_columns = format == WeightsFormat::dmat || format == WeightsFormat::vertex_groups;
   const double bytes =
-      sizeof(float) * static_cast<double>(points.size()) * static_cast<double>(width);
+      sizeof(float) * static_cast<double>(identity.points.size()) * static_cast<double>(width);
   if (by_columns && 2 * bytes > memory_allowed()) { // twice: a vector that grows
     return Error{ErrorCode::too_large, one_line(path.string()) + ": the matrix needs " +
                                            std::to_string(std::llround(2 * bytes / 1e6)) +
@@ -493,9 +535,9 @@ Result<std::unique_ptr<RowSink>> text_sink(WeightsFormat format, std::span<const
   }
   switch (format) {
   case WeightsFormat::csv:
-    return begun(std::make_unique<CsvSink>(*std::move(file), width), points, cage);
+    return begun(std::make_unique<CsvSink>(*std::move(file), width), identity);
   case WeightsFormat::json:
-    return begun(std::make_unique<JsonSink>(*std::move(file), width), points, cage);
+    return begun(std::make_unique<JsonSink>(*std::move(file), width), identity);
   case WeightsFormat::dmat:
     return std::unique_ptr<RowSink>(std::make_unique<DmatSink>(*std::move(file), width));
   case WeightsFormat::vertex_groups:

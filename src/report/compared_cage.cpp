@@ -7,8 +7,8 @@
 namespace cagewright {
 
 Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& cage,
-                                  TriangleView model, const ModelVolume& volume, bool with_poses,
-                                  const Progress& progress) {
+                                  TriangleView model, const ModelVolume& volume,
+                                  const CoordinateSettings* poses, const Progress& progress) {
   ComparedCage compared;
   compared.name = name;
   compared.faces = cage.face_count();
@@ -22,12 +22,13 @@ Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& ca
   }
   compared.validity = std::move(*report);
   compared.metrics = measure_cage(cage, model, volume);
-  if (with_poses) {
-    const Result<PoseErrors> poses = pose_errors(cage, model.positions, progress.part(0.6, 1));
-    if (poses) {
-      compared.poses = *poses;
-    } else if (poses.error().code == ErrorCode::cancelled) {
-      return poses.error();
+  if (poses != nullptr) {
+    const Result<PoseErrors> errors =
+        pose_errors(cage, model.positions, *poses, progress.part(0.6, 1));
+    if (errors) {
+      compared.poses = *errors;
+    } else if (errors.error().code == ErrorCode::cancelled) {
+      return errors.error();
     }
   }
   return compared;
@@ -48,7 +49,7 @@ nlohmann::json json_of(const ComparedCage& cage) {
   }
   json["poses"] = nullptr;
   if (cage.poses) {
-    json["poses"] = {{"undefined", cage.poses->undefined}};
+    json["poses"] = {{"undefined", cage.poses->undefined}, {"outside", cage.poses->outside}};
     for (const StandardPose pose : standard_poses) {
       const PoseError& error = cage.poses->of[static_cast<std::size_t>(pose)];
       json["poses"][std::string(name_of(pose))] = {{"mean_error", error.mean},

@@ -2,6 +2,7 @@
 /// What is said of a cage when it is compared with others.
 #pragma once
 
+#include <cagewright/coordinates/kinds.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
 #include <cagewright/deform/standard_poses.h>
@@ -33,10 +34,11 @@ struct ComparedCage {
 ///
 /// \param name    what it is called in the result
 /// \param volume  of the model
+/// \param poses   the coordinates by which the model follows; null: leave out how well
 /// Errors: cancelled.
 Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& cage,
-                                  TriangleView model, const ModelVolume& volume, bool with_poses,
-                                  const Progress& progress);
+                                  TriangleView model, const ModelVolume& volume,
+                                  const CoordinateSettings* poses, const Progress& progress);
 
 nlohmann::json json_of(const ComparedCage& cage);
 

@@ -284,6 +284,11 @@ static void deforms(const cw_mesh* mesh, const cw_cage* cage, const char* model_
   }
   EXPECT(worst < 1e-12);
   free(weights);
+  size_t columns = 0;
+  SUCCEEDS(cw_coordinate_columns("green", "quads=diagonal", &faces, &columns, &error));
+  EXPECT(columns > corners);
+  FAILS(cw_coordinates("green", NULL, &model.positions, &faces, NULL, NULL, corners, &error),
+        CW_INVALID_OPTION, "does not fit");
   FAILS(cw_coordinates("teapot", NULL, &model.positions, &faces, NULL, NULL, 0, &error),
         CW_INVALID_OPTION, "teapot");
 

@@ -69,7 +69,7 @@ std::vector<Cage> cages() {
 }
 
 std::vector<double> weights_of(const MeanValueSolver& solver, const Vec3& point) {
-  const std::size_t count = solver.cage_vertices();
+  const std::size_t count = solver.columns();
   std::vector<double> tile(16 * count);
   const TileReport report = solver.solve(std::span(&point, 1), tile);
   EXPECT_EQ(report.undefined, 0) << point.transpose();

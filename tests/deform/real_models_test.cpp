@@ -3,6 +3,7 @@
 
 #include "coordinates/reference.h"
 #include "mesh/shapes.h"
+#include <cagewright/coordinates/mean_value.h>
 #include <cagewright/deform/deformer.h>
 #include <cagewright/io/read_mesh.h>
 #include <cagewright/mesh/measures.h>

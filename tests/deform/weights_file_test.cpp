@@ -2,6 +2,7 @@
 
 #include "core/random.h"
 #include "mesh/shapes.h"
+#include <cagewright/coordinates/mean_value.h>
 
 #include <gtest/gtest.h>
 
@@ -46,7 +47,7 @@ protected:
 
   MeanValueSolver solver() const { return *MeanValueSolver::create(cage_, {.allow_open = true}); }
   void bind() {
-    const Result<BoundCounts> counts = bind_to_file(solver(), points_, cage_, path_);
+    const Result<PointCounts> counts = bind_to_file(solver(), {}, points_, cage_, path_);
     ASSERT_TRUE(counts) << counts.error().message;
   }
   std::string bytes() const {
@@ -76,7 +77,7 @@ TEST_F(WeightsFile, GivesBackWhatWasBound) {
   for (std::size_t t = 0; t < expected->weights.tile_count(); ++t) {
     ASSERT_TRUE(std::ranges::equal(stored->weights.tile(t), expected->weights.tile(t)));
   }
-  EXPECT_EQ(stored->kind, "mean_value");
+  EXPECT_EQ(stored->settings.kind().name, "mean_value");
   EXPECT_TRUE(belongs_to(*stored, points_, cage_));
 }
 
@@ -86,7 +87,7 @@ TEST_F(WeightsFile, GivesBackWhatWasBoundAsText) {
   const Result<StoredWeights> expected = read_weights(path_);
   for (const WeightsFormat format :
        {WeightsFormat::csv, WeightsFormat::json, WeightsFormat::dmat}) {
-    ASSERT_TRUE(bind_to_file(solver(), points_, cage_, path_, format));
+    ASSERT_TRUE(bind_to_file(solver(), {}, points_, cage_, path_, format));
     const Result<StoredWeights> stored = read_weights(path_); // by content, not by name
     ASSERT_TRUE(stored) << stored.error().message;
     ASSERT_EQ(stored->weights.points(), points_.size());
@@ -109,7 +110,7 @@ TEST_F(WeightsFile, RefusesTextThatIsCutOffOrDamaged) {
   points_.resize(40);
   for (const WeightsFormat format :
        {WeightsFormat::csv, WeightsFormat::json, WeightsFormat::dmat}) {
-    ASSERT_TRUE(bind_to_file(solver(), points_, cage_, path_, format));
+    ASSERT_TRUE(bind_to_file(solver(), {}, points_, cage_, path_, format));
     const std::string whole = bytes();
     for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 97) {
       overwrite(whole.substr(0, size));
@@ -127,7 +128,7 @@ TEST_F(WeightsFile, RefusesTextThatIsCutOffOrDamaged) {
 
 TEST_F(WeightsFile, WritesGroupsOfVertices) {
   points_.resize(10);
-  ASSERT_TRUE(bind_to_file(solver(), points_, cage_, path_, WeightsFormat::vertex_groups));
+  ASSERT_TRUE(bind_to_file(solver(), {}, points_, cage_, path_, WeightsFormat::vertex_groups));
   EXPECT_EQ(bytes().rfind("{\"format\": \"cagewright-vertex-groups\"", 0), 0U);
   EXPECT_NE(refusal().find("groups of vertices"), std::string::npos);
 }
@@ -217,15 +218,16 @@ TEST_F(WeightsFile, SaysWhatItIsNot) {
 TEST_F(WeightsFile, LeavesNothingBehindWhenCancelled) {
   StopFlag stop;
   stop.request_stop();
-  const Result<BoundCounts> counts = bind_to_file(solver(), points_, cage_, path_, Progress(stop));
+  const Result<PointCounts> counts =
+      bind_to_file(solver(), {}, points_, cage_, path_, Progress(stop));
   ASSERT_FALSE(counts);
   EXPECT_EQ(counts.error().code, ErrorCode::cancelled);
   EXPECT_TRUE(std::filesystem::is_empty(directory_));
 }
 
 TEST_F(WeightsFile, CannotBeWrittenWhereThereIsNoDirectory) {
-  const Result<BoundCounts> counts =
-      bind_to_file(solver(), points_, cage_, directory_ / "no" / "w.npz");
+  const Result<PointCounts> counts =
+      bind_to_file(solver(), {}, points_, cage_, directory_ / "no" / "w.npz");
   ASSERT_FALSE(counts);
   EXPECT_EQ(counts.error().code, ErrorCode::cannot_write);
 }

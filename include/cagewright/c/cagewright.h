@@ -256,16 +256,22 @@ CW_API cw_code cw_info(const cw_mesh_view* model, int resolution, const cw_contr
 
 /* ---- Deformation ----------------------------------------------------------------------------- */
 
-/// How much each of P points follows each of C cage vertices: P x C numbers, rows that sum to 1.
+/// How much each of P points follows each of K columns: those of the C cage vertices, and for some
+/// kinds of coordinates more behind them, such as one for the normal of each face.
 ///
-/// \param kind      of coordinates: "mean_value"
-/// \param settings  of that kind, "quads=diagonal"; NULL: as they are by themselves
+/// \param kind      of coordinates, as `cagewright coordinates` lists them; NULL: "mean_value", of
+///                  which K = C
+/// \param settings  of that kind, "quads=diagonal outside=rest"; NULL: as they are by themselves
 /// \param points    P x 3
-/// \param weights   P rows of C doubles to be written
-/// \param row       doubles from one row to the next; 0: C
+/// \param weights   P rows of K doubles to be written
+/// \param row       doubles from one row to the next; 0: K
 CW_API cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* points,
                               const cw_mesh_view* cage, const cw_control* control, double* weights,
                               size_t row, cw_error** error);
+
+/// K, the columns that cw_coordinates() writes for a cage.
+CW_API cw_code cw_coordinate_columns(const char* kind, const char* settings,
+                                     const cw_mesh_view* cage, size_t* columns, cw_error** error);
 
 /// A model bound to a cage, for moving it again and again.
 typedef struct cw_deformer cw_deformer;

@@ -2,7 +2,7 @@
 /// Weights in half the memory, with a proven bound on what that costs.
 #pragma once
 
-#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/coordinates.h>
 #include <cagewright/coordinates/weights.h>
 #include <cagewright/core/geometry.h>
 #include <cagewright/core/progress.h>
@@ -14,7 +14,7 @@
 
 namespace cagewright {
 
-/// Weights as 16-bit multiples of a step, one for each cage vertex in each block of 1024 points:
+/// Weights as 16-bit multiples of a step, one for each column in each block of 1024 points:
 /// weight(p, c) = tiles.at(p, c) * steps_of_tile(p / 512)[c].
 ///
 /// Meant for displacements (rest position + sum of weight times displacement), where a cage at rest
@@ -24,18 +24,18 @@ struct CompactWeights {
   static constexpr std::size_t block_tiles = 2; ///< tiles that share their steps
 
   WeightTiles<std::int16_t> tiles;
-  std::vector<double> steps; ///< C for each block
+  std::vector<double> steps; ///< K for each block
 
   CompactWeights() = default;
   /// The weights are not set.
-  CompactWeights(std::size_t points, std::size_t cage_vertices);
+  CompactWeights(std::size_t points, std::size_t columns);
 
   [[nodiscard]] std::size_t points() const { return tiles.points(); }
-  [[nodiscard]] std::size_t cage_vertices() const { return tiles.cage_vertices(); }
+  [[nodiscard]] std::size_t columns() const { return tiles.columns(); }
   [[nodiscard]] std::size_t tile_count() const { return tiles.tile_count(); }
   [[nodiscard]] std::size_t bytes() const { return tiles.bytes(); }
   [[nodiscard]] std::span<const double> steps_of_tile(std::size_t tile) const {
-    return std::span(steps).subspan(tile / block_tiles * cage_vertices(), cage_vertices());
+    return std::span(steps).subspan(tile / block_tiles * columns(), columns());
   }
 };
 
@@ -45,17 +45,16 @@ CompactWeights make_compact(const FloatWeights& weights);
 
 struct SolvedCompactWeights {
   CompactWeights weights;
-  std::size_t on_surface = 0; ///< points that lie on the cage
-  std::size_t undefined = 0;  ///< points without weights: their rows are zero
+  PointCounts counts;
 };
 
-/// The weights of all points from a prepared cage, rounded block by block: they never stand in
-/// memory otherwise. Errors: cancelled.
-Result<SolvedCompactWeights> solve_compact(const MeanValueSolver& solver,
+/// The weights of all points, rounded block by block: they never stand in
+/// memory otherwise. Errors: those of solve_all().
+Result<SolvedCompactWeights> solve_compact(const Coordinates& coordinates,
                                            std::span<const Vec3> points,
                                            const Progress& progress = {});
 
-/// No point is moved by these displacements (C) farther than this from where the original weights
+/// No point is moved by these displacements (K) farther than this from where the original weights
 /// would have moved it: the sum of half a step times the length of the displacement, in the block
 /// where that is greatest.
 double position_error_bound(const CompactWeights& weights, std::span<const Vec3> displacements);

@@ -2,27 +2,18 @@
 /// Mean value coordinates for closed cages of triangles and quads.
 #pragma once
 
+#include <cagewright/coordinates/coordinates.h>
+#include <cagewright/coordinates/kinds.h>
 #include <cagewright/coordinates/weights.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
-#include <cstdint>
 #include <memory>
 #include <span>
 
 namespace cagewright {
-
-/// What the surface of the cage is inside a quad.
-enum class QuadTreatment {
-  /// Four triangles round the mean of the corners, whose weight the corners share: agrees with the
-  /// bilinear patch on the boundary and in the middle, and does not depend on how the quad is
-  /// written down, so that mirrored cages give mirrored weights. Twice the cost of `diagonal`.
-  center,
-  /// The two triangles of triangulate(): what a renderer shows.
-  diagonal,
-};
 
 struct MeanValueOptions {
   QuadTreatment quads = QuadTreatment::center;
@@ -30,15 +21,9 @@ struct MeanValueOptions {
   bool allow_open = false;
 };
 
-/// What became of up to 16 points; bit i speaks of point i.
-struct TileReport {
-  std::uint16_t on_surface = 0; ///< within 4e-15 of the cage's diagonal: took the surface's weights
-  std::uint16_t undefined = 0;  ///< no weights exist, all are 0 (not finite, or a broken cage)
-};
-
 /// A cage prepared for computing weights, sixteen points at a time. Immutable: any number of
 /// threads may use one.
-class MeanValueSolver {
+class MeanValueSolver : public Coordinates {
 public:
   /// Errors: invalid_cage (no faces, an index out of range, positions not finite or all equal,
   /// open edges unless allowed).
@@ -46,27 +31,19 @@ public:
   static Result<MeanValueSolver> create(const PolygonMesh& cage,
                                         const MeanValueOptions& options = {});
 
-  [[nodiscard]] std::size_t cage_vertices() const;
-
-  /// The weights of up to 16 points: weights[c * stride + i] of point i for cage vertex c. Computed
-  /// in double, and rounded when stored to float. Of each 16 numbers those behind the last point
-  /// become 0.
-  /// \param weights  at least (C - 1) stride + 16 numbers
-  /// \param stride   at least 16
-  TileReport solve(std::span<const Vec3> points, std::span<double> weights,
-                   std::size_t stride = 16) const;
-  TileReport solve(std::span<const Vec3> points, std::span<float> weights,
-                   std::size_t stride = 16) const;
-
-  /// The same computed in float, several times as fast: for previews. A point reproduced with
-  /// these weights errs by less than 1e-5 of the cage's diagonal.
+  /// What solve() computes in double, computed in float, several times as fast: for previews. A
+  /// point reproduced with these weights errs by less than 1e-5 of the cage's diagonal.
   TileReport preview(std::span<const Vec3> points, std::span<float> weights,
                      std::size_t stride = 16) const;
 
   struct Tables; ///< the prepared cage; defined with the implementation
 
 private:
-  explicit MeanValueSolver(std::shared_ptr<const Tables> tables) : tables_(std::move(tables)) {}
+  MeanValueSolver(std::shared_ptr<const Tables> tables, std::span<const Vec3> cage);
+  TileReport solve_tile(std::span<const Vec3> points, std::span<double> weights,
+                        std::size_t stride) const override;
+  TileReport solve_tile(std::span<const Vec3> points, std::span<float> weights,
+                        std::size_t stride) const override;
 
   std::shared_ptr<const Tables> tables_;
 };
@@ -93,16 +70,7 @@ Result<Weights> mean_value_coordinates(const PolygonMesh& cage, std::span<const 
                                        const MeanValueOptions& options = {},
                                        const Progress& progress = {});
 
-template <class T> struct SolvedWeights {
-  WeightTiles<T> weights;
-  std::size_t on_surface = 0; ///< points that lie on the cage
-  std::size_t undefined = 0;  ///< points without weights: their rows are zero
-};
-
-/// The weights of all points from a prepared cage; T is double or float.
-/// Errors: cancelled.
-template <class T>
-Result<SolvedWeights<T>> solve_all(const MeanValueSolver& solver, std::span<const Vec3> points,
-                                   const Progress& progress = {});
+/// Mean value coordinates among the others, with the option `quads`.
+extern const CoordinateKind mean_value_kind;
 
 } // namespace cagewright

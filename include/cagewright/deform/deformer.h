@@ -2,8 +2,9 @@
 /// A model bound to a cage, for moving it again and again.
 #pragma once
 
+#include <cagewright/coordinates/columns.h>
 #include <cagewright/coordinates/compact_weights.h>
-#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/kinds.h>
 #include <cagewright/coordinates/weights.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
@@ -20,13 +21,13 @@ namespace cagewright {
 
 /// How the weights are kept.
 enum class WeightStorage {
-  full,    ///< double: P C 8 bytes
+  full,    ///< double: P K 8 bytes for K columns
   single,  ///< float: half of that; positions err by less than 1e-7 of the displacement
   compact, ///< 16-bit steps: a quarter; see position_error_bound()
 };
 
 struct DeformerOptions {
-  MeanValueOptions coordinates = {};
+  CoordinateSettings coordinates = {}; ///< their kind, and its options
   WeightStorage storage = WeightStorage::single;
   bool normals = true; ///< keep normals up to date
   NormalWeighting normal_weighting = NormalWeighting::area;
@@ -44,7 +45,7 @@ struct DeformerOptions {
 /// before.
 class Deformer {
 public:
-  /// Binds by mean value coordinates.
+  /// Binds by the coordinates that the options name.
   /// \param slots  which corners of the model share a normal; none: smooth everywhere
   /// Errors: invalid_cage, cancelled.
   static Result<Deformer> bind(const PolygonMesh& model, const PolygonMesh& cage,
@@ -52,10 +53,11 @@ public:
                                std::optional<NormalSlots> slots = {},
                                const Progress& progress = {});
 
-  /// Takes weights that were computed or read before: P x C.
-  /// Errors: mismatch (the weights are for other numbers of vertices).
+  /// Takes weights that were computed or read before: P x K for the rule's K columns, see
+  /// vertex_columns() and CoordinateKind::rule.
+  /// Errors: mismatch (the weights are for other numbers of vertices or columns).
   static Result<Deformer> from_weights(const PolygonMesh& model,
-                                       std::span<const Vec3> cage_positions, FloatWeights weights,
+                                       std::shared_ptr<const ColumnRule> rule, FloatWeights weights,
                                        const DeformerOptions& options = {},
                                        std::optional<NormalSlots> slots = {});
 
@@ -64,8 +66,8 @@ public:
   /// Moves all of them: C positions.
   void set_cage(std::span<const Vec3> positions);
 
-  /// Brings positions and normals up to date. Cost: k P weights are read for k moved cage
-  /// vertices; normals are computed where the model moved.
+  /// Brings positions and normals up to date. Cost: n P weights are read for n columns that move,
+  /// such as one for each moved vertex of the cage; normals are computed where the model moved.
   void update();
 
   [[nodiscard]] std::span<const Vec3> positions() const { return positions_; }
@@ -73,7 +75,7 @@ public:
   [[nodiscard]] std::span<const Vec3> normals() const { return normals_.normals(); }
   [[nodiscard]] std::span<const Vec3> cage_positions() const { return cage_; }
   [[nodiscard]] std::span<const Vec3> rest_positions() const { return rest_; }
-  [[nodiscard]] std::span<const Vec3> cage_rest_positions() const { return cage_rest_; }
+  [[nodiscard]] std::span<const Vec3> cage_rest_positions() const { return rule_->cage_at_rest(); }
 
   /// For each of the P vertices the sum of its weights for these cage vertices (each < C): how far
   /// it goes along when they all move alike. Cost: k P weights are read.
@@ -89,21 +91,23 @@ public:
 private:
   using Storage = std::variant<Weights, FloatWeights, CompactWeights>;
 
-  Deformer(const PolygonMesh& model, std::span<const Vec3> cage_positions, Storage weights,
+  Deformer(const PolygonMesh& model, std::shared_ptr<const ColumnRule> rule, Storage weights,
            const DeformerOptions& options, std::optional<NormalSlots> slots);
 
-  void mark(Index vertex);
   void move_model();
   void update_normals();
 
   Storage weights_;
   std::vector<Vec3> rest_, positions_;
-  std::vector<Vec3> cage_rest_;
-  std::vector<Vec3> cage_;         // as it is set
-  std::vector<Vec3> applied_cage_; // as positions_ shows it
-  std::vector<Index> moved_;       // cage vertices to be applied
+  std::shared_ptr<const ColumnRule> rule_;
+  std::vector<Vec3> cage_; // as it is set
+  std::size_t moved_ = 0;  // how many vertices of it were moved since update()
   std::vector<std::uint8_t> is_moved_;
-  std::vector<Vec3> displacements_; // room for update()
+  std::vector<Vec3> applied_; // the moves of the columns as positions_ shows them
+  std::vector<Vec3> wanted_;  // and as the cage asks for
+  // Room for update(): the columns whose moves differ, and by how much.
+  std::vector<Index> changed_;
+  std::vector<Vec3> changes_;
   std::vector<double> tile_travel_; // how far each tile has come since its normals were computed
   std::vector<std::uint8_t> tile_is_stale_;
   NormalField normals_;

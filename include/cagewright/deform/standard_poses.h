@@ -2,6 +2,7 @@
 /// Two deformations defined for every model, to compare how well cages carry them.
 #pragma once
 
+#include <cagewright/coordinates/kinds.h>
 #include <cagewright/core/geometry.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
@@ -56,17 +57,18 @@ struct PoseError {
 struct PoseErrors {
   std::array<PoseError, standard_poses.size()> of = {}; ///< by StandardPose
   std::size_t undefined = 0; ///< vertices without weights: they stay at rest, and count as they are
+  std::size_t outside =
+      0; ///< of vertices outside the cage, where the kind is not defined; as these
 };
 
-/// Takes the vertices of the cage alone through each pose, lets the model follow by mean value
-/// coordinates (quads by their center, see QuadTreatment), and compares its V vertices with the
-/// pose of the model itself.
+/// Takes the vertices of the cage alone through each pose, lets the model follow, and compares its
+/// V vertices with the pose of the model itself.
 ///
-/// \param cage   C vertices; it may be open or invalid
+/// \param cage   C vertices; it may be open or invalid where the kind makes sense of it
 /// \param model  V positions, V > 0
-/// Errors: invalid_cage (it has no faces, or a position that is not finite), cancelled.
+/// Errors: invalid_cage (as the kind says), cancelled.
 /// Cost: that of binding, O(V F); no memory for weights. The same on any number of threads.
 Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> model,
-                               const Progress& progress = {});
+                               CoordinateSettings settings = {}, const Progress& progress = {});
 
 } // namespace cagewright

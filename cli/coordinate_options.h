@@ -1,0 +1,41 @@
+/// \file
+/// The options --coordinates NAME and those of each kind, the same in every command.
+#pragma once
+
+#include <cagewright/coordinates/kinds.h>
+#include <cagewright/core/result.h>
+#include <cagewright/deform/weights_file.h>
+
+#include <CLI/CLI.hpp>
+
+#include <list>
+#include <string>
+
+namespace cagewright::cli {
+
+/// What the command line says of coordinates.
+struct CoordinateArguments {
+  struct Value {
+    const CoordinateOption* option = nullptr;
+    std::string text;
+    const CLI::Option* given = nullptr;
+  };
+
+  std::string kind = std::string(CoordinateSettings().kind().name);
+  const CLI::Option* given = nullptr;
+  std::list<Value> values; // a list: CLI11 keeps references to the texts
+};
+
+/// Declares --coordinates and the options of all kinds.
+void add_coordinate_options(CLI::App& command, CoordinateArguments& arguments);
+
+/// What was asked for. Warns of options that the kind does not have.
+/// Errors: invalid_option.
+Result<CoordinateSettings> settings_of(const CoordinateArguments& arguments);
+
+/// Reconciles weights that were read with the command line: options for posing are taken from it,
+/// others must agree; weights that do not say of which kind they are are taken as asked for.
+/// Errors: mismatch, invalid_option.
+Status take_settings(const CoordinateArguments& arguments, StoredWeights& stored);
+
+} // namespace cagewright::cli

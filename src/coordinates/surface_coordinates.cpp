@@ -1,0 +1,42 @@
+#include "coordinates/surface_coordinates.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <string>
+
+namespace cagewright {
+
+TileReport SurfaceCoordinates::solve_tile(std::span<const Vec3> points, std::span<double> weights,
+                                          std::size_t stride) const {
+  assert(points.size() <= 16 && stride >= 16);
+  assert(weights.size() >= (columns() - 1) * stride + 16);
+  TileReport report;
+  if (!points.empty()) {
+    std::array<Vec3, 16> framed;
+    std::ranges::transform(points, framed.begin(),
+                           [&](const Vec3& p) { return surface_.frame.to_frame(p); });
+    report = solve_framed(std::span(framed).first(points.size()), weights.data(), stride);
+  }
+  for (std::size_t k = 0; points.size() < 16 && k < columns(); ++k) {
+    std::fill_n(weights.data() + k * stride + points.size(), 16 - points.size(), 0.0);
+  }
+  return report;
+}
+
+Result<OutsideTreatment> outside_without_continuation(const CoordinateSettings& settings) {
+  const auto outside = static_cast<OutsideTreatment>(settings.choice(outside_option));
+  if (outside == OutsideTreatment::continuation) {
+    return Error{ErrorCode::invalid_option, "--outside: " + std::string(settings.kind().name) +
+                                                " coordinates cannot be continued outside the "
+                                                "cage; give error or rest"};
+  }
+  return outside;
+}
+
+Result<std::shared_ptr<const ColumnRule>> vertex_rule(const PolygonMesh& cage,
+                                                      const CoordinateSettings&) {
+  return vertex_columns(cage.positions);
+}
+
+} // namespace cagewright

@@ -1,0 +1,47 @@
+/// \file
+/// What coordinates computed from a Surface share. Internal to this module.
+#pragma once
+
+#include "coordinates/surface.h"
+#include <cagewright/coordinates/coordinates.h>
+#include <cagewright/coordinates/kinds.h>
+
+#include <memory>
+#include <span>
+#include <utility>
+
+namespace cagewright {
+
+/// Where the weights of sixteen points go: those for column k begin at weights[k * stride].
+struct WeightsOfTile {
+  double* weights = nullptr;
+  std::size_t stride = 16;
+};
+
+/// Points come in the frame of the surface, all columns of one to sixteen points are written.
+class SurfaceCoordinates : public Coordinates {
+protected:
+  SurfaceCoordinates(std::shared_ptr<const ColumnRule> rule, Surface surface,
+                     OutsideTreatment outside)
+      : Coordinates(std::move(rule), outside), surface_(std::move(surface)) {}
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+
+private:
+  /// Writes weights[k * stride + i] of point i for column k; behind the last point anything.
+  virtual TileReport solve_framed(std::span<const Vec3> points, double* weights,
+                                  std::size_t stride) const = 0;
+  TileReport solve_tile(std::span<const Vec3> points, std::span<double> weights,
+                        std::size_t stride) const final;
+
+  Surface surface_;
+};
+
+/// What the option says, of kinds that cannot be continued. Errors: invalid_option.
+Result<OutsideTreatment> outside_without_continuation(const CoordinateSettings& settings);
+
+/// CoordinateKind::rule of kinds that have a column for each vertex and no other.
+Result<std::shared_ptr<const ColumnRule>> vertex_rule(const PolygonMesh& cage,
+                                                      const CoordinateSettings& settings);
+
+} // namespace cagewright
