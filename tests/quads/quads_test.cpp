@@ -3,6 +3,7 @@
 #include "core/random.h"
 #include "envelope/envelope.h"
 #include "improve/improve.h"
+#include "mesh/shape_limits.h"
 #include "mesh/shapes.h"
 #include "mesh/topology.h"
 #include "quads/settle_shapes.h"
