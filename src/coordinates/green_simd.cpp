@@ -169,8 +169,9 @@ namespace {
 
 class GreenCoordinates : public SurfaceCoordinates {
 public:
-  GreenCoordinates(const PolygonMesh& cage, Surface surface, OutsideTreatment outside)
-      : SurfaceCoordinates(normal_columns(cage.positions, surface), std::move(surface), outside) {}
+  GreenCoordinates(std::shared_ptr<const ColumnRule> rule, Surface surface,
+                   OutsideTreatment outside)
+      : SurfaceCoordinates(std::move(rule), std::move(surface), outside) {}
 
 private:
   TileReport solve_framed(std::span<const Vec3> points, double* weights,
@@ -208,8 +209,9 @@ Result<std::shared_ptr<const Coordinates>> green_coordinates(const PolygonMesh& 
   if (!surface) {
     return surface.error();
   }
-  return std::shared_ptr<const Coordinates>(
-      std::make_shared<GreenCoordinates>(cage, *std::move(surface), options.outside));
+  auto rule = normal_columns(cage.positions, *surface);
+  return std::shared_ptr<const Coordinates>(std::make_shared<GreenCoordinates>(
+      std::move(rule), *std::move(surface), options.outside));
 }
 
 constinit const CoordinateKind green_kind = {

@@ -406,6 +406,7 @@ class Bind(InAFolder):
         with zipfile.ZipFile(self.weights) as archive:
             self.assertIsNone(archive.testzip())
             self.assertEqual({"weights.npy", "cage_positions.npy", "cage_faces.npy", "kind.npy",
+                          "options.npy", "columns.npy",
                               "version.npy", "model_checksum.npy"}, set(archive.namelist()))
             raw = archive.read("weights.npy")
         begin = 10 + struct.unpack("<H", raw[8:10])[0]
@@ -478,6 +479,68 @@ class Bind(InAFolder):
         cut = self.folder / "cut.npz"
         cut.write_bytes(self.weights.read_bytes()[:-30])
         self.assert_refused(deform(self.model, self.rest, cut), BAD_INPUT, "cut off")
+
+    def test_every_kind_of_coordinates_binds_and_deforms(self):
+        listed = run("coordinates", "--json", "-", "-q")
+        kinds = json.loads(listed.stdout)["kinds"]
+        names = [kind["name"] for kind in kinds]
+        self.assertEqual(names[0], "mean_value")
+        text = run("coordinates").stdout
+        turned = self.file("turned.obj", cage(lambda x, y, z: (-2 * y + 1, 2 * x, 2 * z)))
+        for name in names:
+            self.assertIn(name + ": ", text)
+            weights = self.folder / f"{name}.npz"
+            bound = run("bind", self.model, self.rest, "-o", weights, "--coordinates", name)
+            self.assertEqual(bound.returncode, DONE, bound.stderr)
+            direct = run("deform", self.model, self.rest, turned, "-o", self.out, "--coordinates",
+                         name)
+            self.assertEqual(direct.returncode, DONE, direct.stderr)
+            there = rows(self.out, "v")
+            stored = run("deform", self.model, self.rest, turned, "-o", self.out, "--weights",
+                         weights)
+            self.assertEqual(stored.returncode, DONE, stored.stderr)
+            # A similarity of the cage is one of the model, whatever the coordinates.
+            expected = [[-2 * y + 1, 2 * x, 2 * z] for x, y, z in rows(self.model, "v")]
+            self.assert_near(there, expected, 1e-5)
+            self.assert_near(rows(self.out, "v"), expected, 1e-5)
+
+    def test_weights_of_one_kind_are_not_applied_as_another(self):
+        weights = self.folder / "green.npz"
+        run("bind", self.model, self.rest, "-o", weights, "--coordinates", "green")
+
+        def deform(*options):
+            return run("deform", self.model, self.rest, self.pose, "-o", self.out, "--weights",
+                       weights, *options)
+
+        self.assert_refused(deform("--coordinates", "mean_value"), BAD_INPUT,
+                            "the weights are green coordinates, not mean_value")
+        self.assert_refused(deform("--quads", "diagonal"), BAD_INPUT, "made with quads=center")
+        self.assertEqual(deform("--quads", "center").returncode, DONE)
+
+    def test_points_outside_are_refused_left_or_continued(self):
+        model = self.file("large.obj", MODEL.replace("v 0.2 ", "v 1.2 "))
+
+        def deform(*options):
+            return run("deform", model, self.rest, self.pose, "-o", self.out, "--coordinates",
+                       "green", *options)
+
+        refused = deform()
+        self.assertEqual(refused.returncode, BAD_INPUT)
+        self.assertIn("outside the cage, where these coordinates are not defined", refused.stderr)
+        self.assertFalse(self.out.exists())
+        self.assertEqual(deform("--outside", "rest").returncode, DONE)
+        there, before = rows(self.out, "v"), rows(model, "v")
+        for old, new in zip(before, there):
+            self.assertAlmostEqual(new[0], old[0] + (0 if old[0] > 1 else 2), delta=1e-5)
+        self.assertEqual(deform("--outside", "continue").returncode, DONE)
+        self.assert_near(rows(self.out, "v"), [[x + 2, y, z] for x, y, z in before], 1e-5)
+        warned = run("deform", model, self.rest, self.pose, "-o", self.out, "--outside", "rest")
+        self.assertIn("--outside makes no difference to mean_value", warned.stderr)
+
+    def test_groups_of_vertices_hold_no_normals(self):
+        self.assert_refused(run("bind", self.model, self.rest, "-o", self.folder / "g.json",
+                                "--format", "vertex-groups", "--coordinates", "green"), BAD_INPUT,
+                            "one weight for each vertex of the cage")
 
     def test_leaves_nothing_when_it_cannot_write(self):
         failed = run("bind", self.model, self.rest, "-o", self.folder / "no" / "w.npz")
