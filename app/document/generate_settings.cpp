@@ -85,13 +85,13 @@ bool is_improved(const GenerateSettings& s) {
 std::vector<GenerateOption> density_options() {
   return {
       {"density", text("Finer where"),
-       text("Where the cage gets more vertices. Painted: where vertex colors are red, and fewer "
+       text("Where the cage gets more vertices. Colors: where vertex colors are red, and fewer "
             "where they are blue. File: one number for each vertex of the model; four times as "
-            "much makes edges half as long."),
+            "much makes edges half as long. Painted here: by the brush of the tool bar."),
        Group::budget,
        GenerateOption::Choice{
-           {"even", "colors", "file"},
-           {text("Even"), text("Painted red"), text("A file says")},
+           {"even", "colors", "file", "painted"},
+           {text("Even"), text("Colors of its file"), text("A file says"), text("Painted here")},
            [](const GenerateSettings& s) { return static_cast<int>(s.density); },
            [](GenerateSettings& s, int i) { s.density = static_cast<DensitySource>(i); }},
        is_improved},
