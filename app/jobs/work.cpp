@@ -308,7 +308,8 @@ Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
       normals.update(positions);
       moving.normals.emplace_back(normals.normals().begin(), normals.normals().end());
     }
-    if (const Result<ModelFile> file = ModelFile::open(part.origin.path); file) { // how it is dressed
+    if (const Result<ModelFile> file = ModelFile::open(part.origin.path);
+        file) { // how it is dressed
       if (Result<MeshAttributes> dress = file->attributes();
           dress && file->mesh().positions.size() == moving.rest.positions.size()) {
         moving.attributes = *std::move(dress);
@@ -323,7 +324,7 @@ Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
       return s;
     }
   }
-  return notes;
+  return success();
 }
 
 Status export_weights(const Model& model, const PolygonMesh& cage,
