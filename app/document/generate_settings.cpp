@@ -70,8 +70,13 @@ GenerateOption of_library(const CageOption& option) {
   return {QString::fromUtf8(option.name.data(), static_cast<qsizetype>(option.name.size())),
           text(option.label), text(option.help), group_of(option),
           std::visit([](const auto& kind) { return Kind(row(kind)); }, option.kind),
-          // How the model is split into boxes is shown whatever the cage is made from.
+          // How the model is split into boxes is shown whatever the cage is made from, but not
+          // among what most people change.
           [&option](const GenerateSettings& s) {
+            if (group_of(option) == Group::basic && option.group == OptionGroup::boxes &&
+                s.options.method == Method::envelope) {
+              return false;
+            }
             return option.group == OptionGroup::boxes
                        ? option.condition == nullptr || option.condition(s.options)
                        : cagewright::applies(option, s.options);

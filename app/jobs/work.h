@@ -66,10 +66,10 @@ std::filesystem::path path_of_part(const Model& model, std::size_t part,
 
 /// Writes the model in each of the poses, each of its parts to a file of its own: see
 /// path_of_part(). A file of the same format as the part's keeps all else that is in it, with its
-/// normals turned along; others get what they can hold. The files are read once more, for all poses.
-/// \returns notes about what the first of them cannot hold
-/// Errors: cannot_open (a file of the model is gone), mismatch (it is another now), cannot_write,
-/// unsupported, invalid_cage, cancelled.
+/// normals turned along; others get what they can hold. The files are read once more, for all
+/// poses. \returns notes about what the first of them cannot hold Errors: cannot_open (a file of
+/// the model is gone), mismatch (it is another now), cannot_write, unsupported, invalid_cage,
+/// cancelled.
 Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress = {});

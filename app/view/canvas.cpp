@@ -215,7 +215,7 @@ void Canvas::draw_or_copy_model(const CanvasView& view) {
     gl.sample_seconds = time.count();
     gl.kept_view = view;
     gl.fine.restart();
-  } else if (view.refine && (can_refine() || (view.patient && gl.can_refine && !view.coarse))) {
+  } else if (view.refine && can_refine(view.patient)) {
     refine(view);
   }
   if (!gl.kept.copy_to(framebuffer)) {
@@ -227,10 +227,11 @@ void Canvas::draw_or_copy_model(const CanvasView& view) {
   }
 }
 
-bool Canvas::can_refine() const {
+bool Canvas::can_refine(bool patient) const {
   const Gl& gl = *gl_;
   return gl.can_keep && gl.can_refine && gl.kept_view && !gl.kept_view->coarse &&
-         gl.sample_seconds < slow_sample && gl.fine.samples() < FinePicture::most_samples;
+         (patient || gl.sample_seconds < slow_sample) &&
+         gl.fine.samples() < FinePicture::most_samples;
 }
 
 void Canvas::refine(const CanvasView& view) {

@@ -109,7 +109,8 @@ public:
 
   /// Whether the picture that was drawn last would get finer, if it were drawn again with
   /// `CanvasView::refine` and nothing else changed. Each time costs about one picture of the model.
-  [[nodiscard]] bool can_refine() const;
+  /// \param patient  however long it takes
+  [[nodiscard]] bool can_refine(bool patient = false) const;
 
   /// How long the last picture of a large model took, with all triangles; 0 for others.
   [[nodiscard]] double model_seconds() const { return model_seconds_; }

@@ -367,6 +367,17 @@ CanvasView Viewport::canvas_view(int width, int height, double ratio) const {
   return view;
 }
 
+void Viewport::finish_picture() {
+  rest_.stop();
+  patient_ = true;
+  do {
+    refines_ = true;
+    grabFramebuffer();
+  } while (canvas_ && canvas_->can_refine(patient_));
+  patient_ = false;
+  update();
+}
+
 void Viewport::paintGL() {
   if (canvas_) {
     // What is dragged may leave the box of the scene.
@@ -383,6 +394,7 @@ void Viewport::paintGL() {
     const bool still = !rest_.isActive() && !drag_.is_active() &&
                        (gesture_ == Gesture::none || gesture_ == Gesture::press);
     view.refine = std::exchange(refines_, false) && still;
+    view.patient = patient_;
     canvas_->draw(view, marks, make_overlay());
     if (still && canvas_->can_refine() && !refine_.isActive()) {
       refine_.start(); // once all else is done

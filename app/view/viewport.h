@@ -84,8 +84,8 @@ public:
   /// often. Then the loops slide, until another.
   void begin_loop_cut();
   [[nodiscard]] bool cutting_loops() const { return loop_cut_.has_value(); }
-  /// Whether the picture is still being made finer.
-  [[nodiscard]] bool refining() const { return rest_.isActive() || refine_.isActive(); }
+  /// Makes the picture as fine as it gets, however long that takes.
+  void finish_picture();
   /// Takes all pins of the model away, by which it is dragged.
   void remove_pins();
   /// Takes away what was painted.
@@ -230,6 +230,7 @@ private:
   QTimer rest_;   // runs while something moves, and a moment longer
   QTimer refine_; // until the picture is made finer
   bool refines_ = false;
+  bool patient_ = false;
 
   CageGraph graph_;
   bool graph_is_stale_ = true;

@@ -63,12 +63,17 @@ protected:
     QCoreApplication::sendEvent(&view(), &event);
   }
   /// A pixel on the model, and off its cage's vertices: the middle of its front.
-  QPoint on_model() {
-    const std::span<const Vec3> p = document().model_positions();
+  /// \param beside  a pixel that is to be so far away
+  QPoint on_model(QPoint beside = {-1000, -1000}, int away = 0) {
     const Vec3 backward = view().camera().axes().row(2);
-    const auto front = std::ranges::max_element(
-        p, [&](const Vec3& a, const Vec3& b) { return a.dot(backward) < b.dot(backward); });
-    return at(*front);
+    std::optional<Vec3> front;
+    for (const Vec3& p : document().model_positions()) {
+      if ((at(p) - beside).manhattanLength() >= away &&
+          (!front || p.dot(backward) > front->dot(backward))) {
+        front = p;
+      }
+    }
+    return at(front.value_or(Vec3::Zero()));
   }
   std::size_t keys_of_time_line() { return document().state().time_line.keys.size(); }
 };
@@ -297,8 +302,7 @@ TEST_F(Craft, DragsTheModelAndTheCageComesAlong) {
   EXPECT_GT(greatest_distance(cage(), rest), 1e-3);
   const std::vector<Vec3> pulled = cage();
   // Another one that only holds.
-  const QPoint other = place + QPoint(-60, 60);
-  click_at(other);
+  click_at(on_model(now, 90));
   ASSERT_EQ(document().state().pins.size(), 2U);
   EXPECT_EQ(cage(), pulled);
   keep("pins");
@@ -328,6 +332,10 @@ TEST_F(Craft, DragsTheModelAndTheCageComesAlong) {
 TEST_F(Craft, PaintsWhereTheNextCageIsFiner) {
   open_model();
   take_tool(Tool::paint);
+  ToolSettings tools = document().tools();
+  tools.brush_radius = 90;
+  tools.brush_strength = 1;
+  document().set_tools(tools);
   const QPoint place = on_model();
   drag(place, place + QPoint(40, 0));
   settle();
@@ -379,12 +387,9 @@ TEST_F(Craft, PaintsWhereTheNextCageIsFiner) {
 TEST_F(Craft, LooksLikeWhatIsChosenAndGetsFinerAtRest) {
   open_caged();
   const auto settled = [this] { // as fine as it gets
-    QImage last = view().grabFramebuffer();
-    EXPECT_TRUE(wait_until([&] {
-      const QImage now = view().grabFramebuffer();
-      return std::exchange(last, now) == now && !view().refining();
-    }));
-    return last;
+    settle();
+    view().finish_picture();
+    return view().grabFramebuffer();
   };
   std::map<int, QImage> pictures;
   auto* look = find<QComboBox>("look");
