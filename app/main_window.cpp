@@ -1,15 +1,19 @@
 #include "app/main_window.h"
 
 #include "app/document/selected_vertices.h"
+#include "app/edit/select.h"
 #include "app/panels/figures_panel.h"
 #include "app/panels/generate_panel.h"
 #include "app/panels/guide_bar.h"
+#include "app/panels/history_panel.h"
 #include "app/panels/layers_panel.h"
 #include "app/panels/poses_panel.h"
 #include "app/panels/sections_panel.h"
 #include "app/panels/selection_panel.h"
 #include "app/panels/time_line_panel.h"
 #include "app/panels/tool_bar.h"
+#include "app/panels/welcome_page.h"
+#include "app/samples.h"
 #include "app/theme.h"
 #include "app/view/viewport.h"
 
@@ -21,6 +25,7 @@
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QLabel>
+#include <QMenu>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
@@ -35,6 +40,7 @@
 #include <QVBoxLayout>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <utility>
@@ -100,6 +106,7 @@ MainWindow::MainWindow(const QDir& recovery_folder, QWidget* parent)
   const QSettings settings;
   restoreGeometry(settings.value("window/geometry").toByteArray());
   restoreState(settings.value("window/state").toByteArray());
+  fold_panels();
   session_.set_settings(generate_settings_from_json(settings.value("generate").toJsonObject()));
   apply(preferences_);
   update_title();
@@ -141,16 +148,21 @@ void MainWindow::make_panels() {
   layout->addWidget(viewport_, 1);
   setCentralWidget(middle);
 
-  welcome_ = new QLabel(viewport_);
-  welcome_->setObjectName("welcome");
-  welcome_->setAlignment(Qt::AlignCenter);
-  welcome_->setTextFormat(Qt::RichText);
-  welcome_->setAttribute(Qt::WA_TransparentForMouseEvents);
-  welcome_->setText(
-      tr("<p style='font-size:20pt'>Drop a model here</p>"
-         "<p style='font-size:12pt'>or press <b>Ctrl+O</b> to open one</p>"
-         "<p style='font-size:11pt'>Then: <b>Generate Cage</b> &rarr; <b>Bind</b> &rarr; drag the "
-         "cage's vertices &rarr; <b>Export Model</b></p>"));
+  welcome_ = new WelcomePage(viewport_);
+  connect(welcome_, &WelcomePage::openRequested, this, &MainWindow::choose_model);
+  connect(welcome_, &WelcomePage::helpRequested, this, &MainWindow::show_first_steps);
+  connect(welcome_, &WelcomePage::fileRequested, this, [this](const QString& path) { open(path); });
+  connect(welcome_, &WelcomePage::sampleRequested, this, &MainWindow::open_sample);
+  notice_ = new QLabel(viewport_);
+  notice_->setObjectName("notice");
+  notice_->setAttribute(Qt::WA_TransparentForMouseEvents);
+  notice_->setStyleSheet("background: rgba(25, 27, 31, 215); color: white; border-radius: 6px; "
+                         "padding: 5px 12px");
+  notice_->hide();
+  notice_timer_.setSingleShot(true);
+  notice_timer_.setInterval(6000);
+  connect(&notice_timer_, &QTimer::timeout, notice_, &QWidget::hide);
+  connect(&session_.editor(), &Editor::message, this, &MainWindow::show_notice);
 
   tools_ = new ToolBar(session_.document());
   addToolBar(tools_);
@@ -171,18 +183,23 @@ void MainWindow::make_panels() {
   QDockWidget* layers =
       dock(this, "dock_layers", tr("Layers"), layers_, Qt::RightDockWidgetArea, true);
   QDockWidget* poses = dock(this, "dock_poses", tr("Poses"), poses_, Qt::RightDockWidgetArea, true);
+  QDockWidget* history =
+      dock(this, "dock_history", tr("History"), new HistoryPanel(session_.editor().undo_stack()),
+           Qt::RightDockWidgetArea, false);
   tabifyDockWidget(layers, poses);
+  tabifyDockWidget(poses, history);
   layers->raise();
-  QDockWidget* line =
+  line_dock_ =
       dock(this, "dock_time_line", tr("Time Line"), time_line_, Qt::BottomDockWidgetArea, false);
-  QDockWidget* sections = dock(this, "dock_sections", tr("Boxes and Cross-Sections"), sections_,
-                               Qt::BottomDockWidgetArea, false);
-  tabifyDockWidget(line, sections);
-  line->raise();
+  sections_dock_ = dock(this, "dock_sections", tr("Boxes and Cross-Sections"), sections_,
+                        Qt::BottomDockWidgetArea, false);
+  tabifyDockWidget(line_dock_, sections_dock_);
+  line_dock_->raise();
   setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-  resizeDocks({line}, {110}, Qt::Vertical);
-  share_height(line, 110, sections, 280);
+  resizeDocks({line_dock_}, {110}, Qt::Vertical);
+  share_height(line_dock_, 110, sections_dock_, 280);
+  fold_panels();
   resizeDocks({figures_dock, select, layers}, {212, 172, 340}, Qt::Vertical);
   connect(generate_, &GeneratePanel::loadCageRequested, this, &MainWindow::choose_cage);
   connect(guide_, &GuideBar::openRequested, this, &MainWindow::choose_model);
@@ -244,6 +261,7 @@ void MainWindow::connect_session() {
     box.exec();
     return box.clickedButton() == go_on;
   });
+  connect(viewport_, &Viewport::menuRequested, this, &MainWindow::show_view_menu);
   connect(&session_, &Session::bindingDoubtful, this, &MainWindow::ask_about_binding);
   session_.set_camera_source([this] { return viewport_->camera_state(); });
 
@@ -277,6 +295,11 @@ void MainWindow::connect_session() {
   connect(&document, &Document::modeChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::posesChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::timeLineChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::pinsChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::densityChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::posesChanged, this, &MainWindow::unfold_panels);
+  connect(&document, &Document::timeLineChanged, this, &MainWindow::unfold_panels);
+  connect(&document, &Document::stagesChanged, this, &MainWindow::unfold_panels);
 }
 
 void MainWindow::update_title() {
@@ -293,7 +316,11 @@ void MainWindow::update_actions() {
   mode_->setText(!document.has_cage()              ? QString()
                  : document.mode() == Mode::refine ? tr("Refine")
                                                    : tr("Deform"));
-  welcome_->setVisible(!document.has_model() && !document.has_cage());
+  const bool empty = !document.has_model() && !document.has_cage();
+  if (empty && !welcome_->isVisible()) {
+    welcome_->set_recent(recent_files());
+  }
+  welcome_->setVisible(empty);
 }
 
 void MainWindow::apply(const Preferences& preferences) {
@@ -301,10 +328,11 @@ void MainWindow::apply(const Preferences& preferences) {
   const Theme theme = theme_named(preferences.theme);
   apply_theme(*qApp, theme);
   viewport_->set_dark(theme == Theme::dark);
+  apply_key_map(key_map_named(preferences.key_map));
+  viewport_->set_wheel_reversed(preferences.wheel_reversed);
   viewport_->set_coarse_while_moving(preferences.coarse_while_moving);
   viewport_->set_up_axis(preferences.z_up ? UpAxis::z : UpAxis::y);
   sections_->set_dark(theme == Theme::dark);
-  welcome_->setStyleSheet(theme == Theme::dark ? "color: #c9ccd1" : "color: #4a4d52");
   recovery_.set_interval(preferences.autosave_seconds);
   guide_->setVisible(preferences.hints);
 }
@@ -317,7 +345,8 @@ void MainWindow::show_error(const QString& title, const QString& text) {
   box->open(); // not modal for the program: jobs go on
 }
 
-void MainWindow::ask_about_binding(const std::shared_ptr<const ValidityReport>& report) {
+void MainWindow::ask_about_binding(const BindingDoubts& doubts) {
+  const std::shared_ptr<const ValidityReport>& report = doubts.report;
   QStringList found;
   for (std::size_t k = 0; k < violation_kinds; ++k) {
     if (report->counts[k] > 0) {
@@ -328,7 +357,12 @@ void MainWindow::ask_about_binding(const std::shared_ptr<const ValidityReport>& 
       QMessageBox::Warning, tr("Bind"),
       tr("This is not a valid cage of the model: parts of the model may not follow it, or follow "
          "wrongly.<ul><li>%1</li></ul>")
-          .arg(found.join("</li><li>")),
+              .arg(found.join("</li><li>")) +
+          (doubts.fit ? tr("<p>It would fit if it were %1: then %2 % of the model's vertices were "
+                           "inside.</p>")
+                            .arg(QString::fromStdString(doubts.fit->description).toHtmlEscaped())
+                            .arg(std::floor(100 * doubts.fit->inside))
+                      : QString()),
       QMessageBox::NoButton, this);
   box->setObjectName("binding_question");
   box->setAttribute(Qt::WA_DeleteOnClose);
@@ -343,14 +377,19 @@ void MainWindow::ask_about_binding(const std::shared_ptr<const ValidityReport>& 
     return std::ranges::any_of(kinds, [&](ViolationKind k) { return report->count(k) > 0; });
   };
   using enum ViolationKind;
+  if (doubts.fit) {
+    offer("fit_cage", tr("Fit Cage to Model"), QMessageBox::ActionRole, [this] {
+      session_.fit_cage_to_model(Session::Then::bind);
+    })->setToolTip(tr("The cage is %1").arg(QString::fromStdString(doubts.fit->description)));
+  }
   if (any({open_edge, coincident_vertices, unused_vertex, degenerate_face})) {
     offer("weld", tr("Weld"), QMessageBox::ActionRole, [this] {
-      session_.weld_cage_and_bind();
+      session_.weld_cage(Session::Then::bind);
     })->setToolTip(tr("Makes vertices in one place one vertex"));
   }
   if (any({inverted_piece, flipped_edge})) {
     offer("turn_outward", tr("Turn Inside Out"), QMessageBox::ActionRole, [this] {
-      session_.turn_cage_outward_and_bind();
+      session_.turn_cage_outward(Session::Then::bind);
     })->setToolTip(tr("Turns all faces outward"));
   }
   offer("show_problem", tr("Show the Problem"), QMessageBox::ActionRole,
@@ -378,6 +417,18 @@ void MainWindow::show_violation(const Violation& violation) {
 void MainWindow::open(const QString& path, const QString& cage) {
   if (may_discard()) {
     session_.open(path.toStdString(), cage.toStdString());
+  }
+}
+
+void MainWindow::open_sample(Sample sample) {
+  const Result<SampleFiles> files = sample_files();
+  if (!files) {
+    show_error(tr("Open Sample"), QString::fromStdString(files.error().message));
+    return;
+  }
+  if (may_discard()) {
+    session_.open(files->model, sample == Sample::model ? std::filesystem::path() : files->cage,
+                  sample == Sample::bound ? Session::Then::bind : Session::Then::stay);
   }
 }
 
@@ -421,6 +472,9 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     return;
   }
   session_.cancel();
+  if (!layout_before_full_view_.isEmpty()) {
+    toggle_full_view();
+  }
   QSettings settings;
   settings.setValue("window/geometry", saveGeometry());
   settings.setValue("window/state", saveState());
@@ -505,6 +559,7 @@ bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
   if (watched == viewport_) {
     if (event->type() == QEvent::Resize) {
       welcome_->setGeometry(viewport_->rect());
+      notice_->move((viewport_->width() - notice_->width()) / 2, 52);
     } else if (event->type() == QEvent::KeyPress || event->type() == QEvent::KeyRelease) {
       const auto* key = static_cast<QKeyEvent*>(event);
       if (key->key() == Qt::Key_C && key->modifiers() == Qt::NoModifier) {
@@ -520,8 +575,139 @@ bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
   return QMainWindow::eventFilter(watched, event);
 }
 
+void MainWindow::show_notice(const QString& text) {
+  if (text.isEmpty()) {
+    return;
+  }
+  notice_->setText(text.left(1).toUpper() + text.mid(1));
+  notice_->setWordWrap(notice_->fontMetrics().horizontalAdvance(text) > viewport_->width() - 80);
+  notice_->setMaximumWidth(viewport_->width() - 40);
+  notice_->adjustSize();
+  notice_->move((viewport_->width() - notice_->width()) / 2, 52);
+  notice_->show();
+  notice_timer_.start();
+}
+
+void MainWindow::toggle_full_view() {
+  if (!layout_before_full_view_.isEmpty()) {
+    restoreState(layout_before_full_view_);
+    guide_->setVisible(guide_before_full_view_);
+    layout_before_full_view_.clear();
+    return;
+  }
+  layout_before_full_view_ = saveState();
+  guide_before_full_view_ = guide_->isVisible();
+  for (QDockWidget* dock : findChildren<QDockWidget*>()) {
+    dock->hide();
+  }
+  tools_->hide();
+  guide_->hide();
+}
+
+void MainWindow::cycle_shading() {
+  Layers layers = session_.document().layers();
+  // Smooth, smooth with its edges, flat, and from the start.
+  if (layers.wireframe) {
+    layers.wireframe = false;
+    layers.smooth_normals = false;
+  } else if (layers.smooth_normals) {
+    layers.wireframe = true;
+  } else {
+    layers.smooth_normals = true;
+  }
+  session_.document().set_layers(layers);
+}
+
+void MainWindow::show_view_menu(const QPoint& at) {
+  Document& document = session_.document();
+  const auto action = [this](const QString& name) { return findChild<QAction*>(name); };
+  const auto cage_action = [&](CageAction a) { return action(command_name(a)); };
+  QList<QAction*> entries;
+  if (document.has_cage()) {
+    PolygonMesh cage = document.cage();
+    const auto shown = document.shown_cage_positions();
+    cage.positions.assign(shown.begin(), shown.end());
+    const CageGraph graph(cage);
+    const SelectionMode mode = document.selection().mode;
+    const std::optional<Pick> pick =
+        Picker(cage, graph).pick(viewport_->camera(), Pixel(at.x(), at.y()), mode);
+    if (pick) {
+      Selection found;
+      found.mode = mode;
+      if (mode == SelectionMode::vertex) {
+        found.vertices = {pick->element};
+      } else if (mode == SelectionMode::edge) {
+        found.edges = {graph.edge(pick->element)};
+      } else {
+        found.faces = {pick->element};
+      }
+      if (!(combined(document.selection(), found, Combine::add) == document.selection())) {
+        session_.editor().select(found);
+      }
+    }
+    using enum CageAction;
+    if (!document.selection().empty()) {
+      entries = {cage_action(grow), cage_action(select_linked), cage_action(mirror_selection),
+                 action("frame_selection"), nullptr};
+      if (document.mode() == Mode::refine) {
+        if (mode == SelectionMode::edge) {
+          entries += {action("loop_cut"), cage_action(split), cage_action(flip),
+                      cage_action(select_loop), cage_action(select_ring)};
+        } else if (mode == SelectionMode::face) {
+          entries += {cage_action(extrude), cage_action(subdivide)};
+        }
+        entries += {cage_action(collapse), cage_action(CageAction::remove), nullptr};
+      }
+    }
+    entries += {cage_action(select_all), cage_action(invert), nullptr};
+  }
+  if (document.mode() == Mode::deform) {
+    entries +=
+        {action("keyframe"), action("keep_pose"), action("reset"), action("refine_cage"), nullptr};
+  } else {
+    entries += {action("generate_cage"), action("bind_model"), nullptr};
+  }
+  entries += {action("frame_all"), action("search")};
+  auto* menu = new QMenu(this);
+  menu->setObjectName("view_menu");
+  menu->setAttribute(Qt::WA_DeleteOnClose);
+  for (QAction* entry : entries) {
+    if (entry == nullptr) {
+      menu->addSeparator();
+    } else {
+      menu->addAction(entry);
+    }
+  }
+  menu->popup(viewport_->mapToGlobal(at));
+}
+
+void MainWindow::fold_panels() {
+  line_dock_->hide();
+  sections_dock_->hide();
+  unfolded_.clear();
+  unfold_panels();
+}
+
+/// What is empty takes no room. What the user closes stays closed.
+void MainWindow::unfold_panels() {
+  const auto unfold = [this](QDockWidget* dock) {
+    if (unfolded_.insert(dock).second) {
+      dock->show();
+      dock->raise();
+    }
+  };
+  const State& state = session_.document().state();
+  if (state.stages) {
+    unfold(sections_dock_);
+  }
+  if (!state.poses.empty() || !state.time_line.keys.empty()) {
+    unfold(line_dock_);
+  }
+}
+
 void MainWindow::reset_panels() {
   restoreState(first_layout_);
+  fold_panels();
 }
 
 } // namespace cagewright::app

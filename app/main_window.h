@@ -6,13 +6,18 @@
 #include "app/preferences.h"
 #include "app/recovery.h"
 #include "app/session.h"
+#include "app/view/key_map.h"
 
 #include <QDir>
 #include <QMainWindow>
+#include <QTimer>
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <set>
 
+class QDockWidget;
 class QKeyEvent;
 class QLabel;
 class QMenu;
@@ -27,8 +32,10 @@ class LayersPanel;
 class PosesPanel;
 class SectionsPanel;
 class TimeLinePanel;
+enum class Sample;
 class ToolBar;
 class Viewport;
+class WelcomePage;
 
 class MainWindow final : public QMainWindow {
   Q_OBJECT
@@ -74,7 +81,9 @@ private:
   void make_help_menu();
 
   void choose_model();
+  void open_sample(Sample sample);
   void choose_cage();
+  QString ask_for_model(const QString& title);
   bool save();
   bool save_as();
   void choose_export(const QString& title, const QString& name, const QString& filter,
@@ -89,7 +98,7 @@ private:
   bool may_discard();
   void show_error(const QString& title, const QString& text);
   /// The cage that is to be bound is no valid one: says what is wrong, and offers what helps.
-  void ask_about_binding(const std::shared_ptr<const ValidityReport>& report);
+  void ask_about_binding(const BindingDoubts& doubts);
   /// Selects what is wrong, and brings it into view.
   void show_violation(const Violation& violation);
   void show_recent();
@@ -98,14 +107,29 @@ private:
   void apply(const Preferences& preferences);
   void show_first_steps();
   void show_keys();
+  /// Finds a command by its name.
+  void search_command();
+  /// Everything that stands in a menu, with its key.
+  [[nodiscard]] QList<QAction*> commands() const;
+  /// What can be done with what is under the pointer.
+  void show_view_menu(const QPoint& at);
+  void cycle_shading();
+  void apply_key_map(KeyMap map);
+  /// The view alone, without panels, and back.
+  void toggle_full_view();
+  /// Says in the view why something was refused there.
+  void show_notice(const QString& text);
   void reset_panels();
+  /// Hides the panels that have nothing to show yet.
+  void fold_panels();
+  void unfold_panels();
   [[nodiscard]] bool is_for_view(const QWidget* focus, const QKeyEvent& key) const;
 
   Session session_;
   Preferences preferences_;
   Recovery recovery_;
   Viewport* viewport_ = nullptr;
-  QLabel* welcome_ = nullptr;
+  WelcomePage* welcome_ = nullptr;
   GuideBar* guide_ = nullptr;
   ToolBar* tools_ = nullptr;
   GeneratePanel* generate_ = nullptr;
@@ -113,6 +137,9 @@ private:
   PosesPanel* poses_ = nullptr;
   TimeLinePanel* time_line_ = nullptr;
   SectionsPanel* sections_ = nullptr;
+  QDockWidget* line_dock_ = nullptr;
+  QDockWidget* sections_dock_ = nullptr;
+  std::set<QDockWidget*> unfolded_;
   QMenu* panels_menu_ = nullptr;
   QMenu* recent_ = nullptr;
   QLabel* mode_ = nullptr;
@@ -120,7 +147,12 @@ private:
   QProgressBar* progress_ = nullptr;
   QToolButton* cancel_ = nullptr;
   QByteArray first_layout_;
-  bool passes_on_key_ = false; ///< to the view
+  bool passes_on_key_ = false;                        ///< to the view
+  std::map<QString, QList<QKeySequence>> usual_keys_; ///< of commands, in the usual key map
+  QByteArray layout_before_full_view_;
+  bool guide_before_full_view_ = false;
+  QLabel* notice_ = nullptr;
+  QTimer notice_timer_;
   struct Need {
     QAction* action;
     std::function<bool()> met;

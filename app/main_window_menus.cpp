@@ -1,5 +1,8 @@
 // The menus of the main window: what there is to do, and by which keys.
 #include "app/main_window.h"
+
+#include "app/icons.h"
+#include "app/panels/command_search.h"
 #include "app/panels/guide_bar.h"
 #include "app/panels/layers_panel.h"
 #include "app/panels/poses_panel.h"
@@ -10,14 +13,18 @@
 
 #include <QActionGroup>
 #include <QApplication>
+#include <QDialog>
 #include <QDockWidget>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QInputDialog>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QRegularExpression>
 #include <QSettings>
 #include <QStatusBar>
+#include <QTextBrowser>
+#include <QVBoxLayout>
 
 #include <utility>
 
@@ -52,6 +59,50 @@ void MainWindow::make_menus() {
   make_cage_menu();
   make_pose_menu();
   make_help_menu();
+  for (const auto& [command, picture] :
+       {std::pair("open", "open"), std::pair("save", "save"), std::pair("undo", "undo"),
+        std::pair("redo", "redo"), std::pair("generate_cage", "generate"),
+        std::pair("bind_model", "bind"), std::pair("export_model", "export"),
+        std::pair("keyframe", "keyframe"), std::pair("play_pause", "play")}) {
+    if (QAction* action = findChild<QAction*>(command)) {
+      action->setIcon(icon(picture));
+    }
+  }
+  QAction* first_tool = tools_->actions().first();
+  for (const char* command : {"open", "save", "undo", "redo"}) {
+    tools_->insertAction(first_tool, findChild<QAction*>(command));
+  }
+  tools_->insertSeparator(first_tool);
+}
+
+void MainWindow::apply_key_map(KeyMap map) {
+  if (usual_keys_.empty()) {
+    for (QAction* tool : tools_->actions()) {
+      if (tool->objectName().startsWith("tool_")) { // letters, in the view only
+        tool->setShortcutContext(Qt::WidgetShortcut);
+        viewport_->addAction(tool);
+      }
+    }
+    for (const QAction* action : findChildren<QAction*>()) {
+      if (!action->objectName().isEmpty()) {
+        usual_keys_[action->objectName()] = action->shortcuts();
+      }
+    }
+  }
+  viewport_->set_key_map(map);
+  // None is taken from one command before it is another's.
+  for (const bool give : {false, true}) {
+    for (QAction* action : findChildren<QAction*>()) {
+      const auto usual = usual_keys_.find(action->objectName());
+      if (usual == usual_keys_.end()) {
+        continue;
+      }
+      const QList<QKeySequence> keys = keys_of(map, usual->first, usual->second);
+      if (keys != action->shortcuts()) {
+        action->setShortcuts(give ? keys : QList<QKeySequence>());
+      }
+    }
+  }
 }
 
 QString MainWindow::model_filter(bool all) const {
@@ -76,6 +127,15 @@ void MainWindow::make_file_menu() {
       [this] { choose_model(); });
   QAction* load = add(menu, "load_cage", tr("&Load Cage..."), {"Ctrl+Shift+O"},
                       tr("Takes a cage from a file"), [this] { choose_cage(); });
+  QAction* more_models =
+      add(menu, "add_model", tr("Add &Model..."), {},
+          tr("Another model under the same cage: clothes, eyes. Each is exported to its own file"),
+          [this] {
+            const QString path = ask_for_model(tr("Add a Model"));
+            if (!path.isEmpty()) {
+              session_.add_model(path.toStdString());
+            }
+          });
   recent_ = menu->addMenu(tr("Open &Recent"));
   connect(recent_, &QMenu::aboutToShow, this, &MainWindow::show_recent);
   menu->addSeparator();
@@ -116,6 +176,13 @@ void MainWindow::make_file_menu() {
                             }
                           });
           });
+  QAction* animation =
+      add(more, "export_animation", tr("&Animation..."), {},
+          tr("The time line as one file: GLB with morph targets, or a point cache"), [this] {
+            choose_export(tr("Export Animation"), suggested("-animated", ".glb"),
+                          tr("Animated glTF (*.glb);;Point cache (*.pc2);;LightWave cache (*.mdd)"),
+                          [this](const auto& path) { session_.export_animation(path); });
+          });
   QAction* cage =
       add(more, "export_cage", tr("&Cage..."), {}, tr("The cage as it is shown"), [this] {
         choose_export(tr("Save Cage"), suggested("-cage", ".obj"),
@@ -142,11 +209,15 @@ void MainWindow::make_file_menu() {
       });
   add(menu, "quit", tr("&Quit"), QKeySequence::Quit, tr("Ends the program"), [this] { close(); });
   needs_.push_back({load, has_model});
+  needs_.push_back({more_models, has_model});
   needs_.push_back({save_action, [this] { return session_.document().has_model(); }});
   needs_.push_back({save_as_action, [this] { return session_.document().has_model(); }});
   needs_.push_back({model, deforming});
   needs_.push_back({poses, [this, deforming] {
                       return deforming() && !session_.document().state().poses.empty();
+                    }});
+  needs_.push_back({animation, [this, deforming] {
+                      return deforming() && !session_.document().state().time_line.keys.empty();
                     }});
   needs_.push_back({sequence, [this, deforming] {
                       return deforming() && !session_.document().state().time_line.keys.empty();
@@ -173,8 +244,7 @@ void MainWindow::make_edit_menu() {
 
 void MainWindow::add_action(QMenu* menu, CageAction action, const QString& text,
                             const QKeySequence& keys, const QString& tip) {
-  const QByteArray name = "cage_action_" + QByteArray::number(static_cast<int>(action));
-  QAction* made = add_in_view(menu, name.constData(), text, keys, tip, [this, action] {
+  QAction* made = add_in_view(menu, command_name(action), text, keys, tip, [this, action] {
     if (action == CageAction::extrude) {
       viewport_->extrude(); // and goes on with moving
     } else {
@@ -257,6 +327,17 @@ void MainWindow::make_view_menu() {
     add(standard, name, text, QKeySequence(QString("Alt+%1").arg(++number)), tr("Looks from there"),
         [this, key = QString(name)] { viewport_->set_standard_view(key); });
   }
+  add_in_view(menu, "cycle_shading", tr("Next S&hading"), {"Z"},
+              tr("Smooth, with the model's edges, flat"), [this] { cycle_shading(); });
+  add(menu, "full_view", tr("F&ull View"), {"Ctrl+Space"}, tr("The view alone, and back"),
+      [this] { toggle_full_view(); });
+  menu->addSeparator();
+  using enum CageAction;
+  add_action(menu, hide, tr("&Hide Selection"), {"H"},
+             tr("Puts the selected part of the cage out of sight and out of reach"));
+  add_action(menu, isolate, tr("&Isolate"), {"/"},
+             tr("Shows nothing of the cage but the selection; again: everything"));
+  add_action(menu, reveal, tr("Sho&w All"), {"Alt+H"}, tr("Brings back what is hidden"));
   menu->addSeparator();
   panels_menu_ = menu->addMenu(tr("&Panels"));
   for (QDockWidget* dock : findChildren<QDockWidget*>()) {
@@ -313,11 +394,33 @@ void MainWindow::make_cage_menu() {
              tr("Takes the selection away; the cage closes over it"));
   add_action(menu, extrude, tr("E&xtrude Faces"), {"E"}, tr("Moves faces out, with new sides"));
   menu->addSeparator();
+  QMenu* repair = menu->addMenu(tr("&Make It Fit"));
+  const auto refining = [this, free] {
+    const Document& d = session_.document();
+    return free() && d.has_cage() && d.mode() == Mode::refine;
+  };
+  QAction* fit = add(repair, "fit_cage_to_model", tr("&Fit Cage to Model"), {},
+                     tr("Scales, turns and shifts a cage of another unit, up axis or place"),
+                     [this] { session_.fit_cage_to_model(); });
+  needs_.push_back(
+      {fit, [this, refining] { return refining() && session_.document().has_model(); }});
+  needs_.push_back({add(repair, "weld_cage", tr("&Weld"), {},
+                        tr("Makes vertices in one place one vertex, where the cage is open"),
+                        [this] { session_.weld_cage(); }),
+                    refining});
+  needs_.push_back({add(repair, "turn_cage_outward", tr("&Turn Inside Out"), {},
+                        tr("Turns all faces outward"), [this] { session_.turn_cage_outward(); }),
+                    refining});
+  menu->addSeparator();
   add_in_view(menu, "less_depth", tr("One Cut &Less Deep"), {"["},
               tr("Shows the boxes before the last cuts"), [this] { layers_->step_depth(-1); });
   add_in_view(menu, "more_depth", tr("One Cut &Deeper"), {"]"},
               tr("Shows the boxes after the next cuts"), [this] { layers_->step_depth(1); });
   needs_.push_back({generate, [this, free] { return free() && session_.document().has_model(); }});
+  needs_.push_back(
+      {add(menu, "clear_density", tr("Clear Painted D&ensity"), {},
+           tr("Takes away what was painted on the model"), [this] { viewport_->clear_density(); }),
+       [this] { return session_.document().state().density != nullptr; }});
   needs_.push_back({bind, [this, free] {
                       const Document& d = session_.document();
                       return free() && d.has_model() && d.has_cage() && d.mode() == Mode::refine;
@@ -340,6 +443,10 @@ void MainWindow::make_pose_menu() {
       {add(menu, "reset", tr("&Reset"), {"Ctrl+Shift+R"}, tr("The cage goes back to rest"),
            [this] { session_.editor().reset_pose(); }),
        deforming});
+  needs_.push_back({add(menu, "remove_pins", tr("Remove &Pins"), {},
+                        tr("Takes away the pins by which the model is dragged"),
+                        [this] { viewport_->remove_pins(); }),
+                    [this] { return !session_.document().state().pins.empty(); }});
   menu->addSeparator();
   needs_.push_back({add_in_view(menu, "keyframe", tr("Set Key&frame"), {"K"},
                                 tr("The cage as it is becomes a keyframe"),
@@ -352,10 +459,12 @@ void MainWindow::make_pose_menu() {
 }
 
 void MainWindow::make_help_menu() {
-  QMenu* menu = menuBar()->addMenu(tr("&Help"));
+  QMenu* menu = menuBar()->addMenu(tr("He&lp"));
   add(menu, "first_steps", tr("&First Steps"), {"F1"}, tr("From a model to a deformed one"),
       [this] { show_first_steps(); });
-  add(menu, "keys", tr("&Keys and Mouse"), {}, tr("What keys and mouse do in the view"),
+  add(menu, "search", tr("&Search a Command..."), {"F3"}, tr("Any command, by a part of its name"),
+      [this] { search_command(); });
+  add(menu, "keys", tr("&Keys and Mouse"), {"Shift+F1"}, tr("What keys and mouse do in the view"),
       [this] { show_keys(); });
   add(menu, "about", tr("&About"), {}, tr("Which program this is"), [this] {
     QMessageBox::about(this, tr("About Cagewright"),
@@ -382,21 +491,79 @@ void MainWindow::show_first_steps() {
          "<p>Everything can be undone (Ctrl+Z). The bar above the view says what comes next.</p>"));
 }
 
+QList<QAction*> MainWindow::commands() const {
+  QList<QAction*> found;
+  const std::function<void(const QMenu*)> add_all = [&](const QMenu* menu) {
+    for (QAction* action : menu->actions()) {
+      if (action->menu() != nullptr) {
+        if (action->menu() != recent_) {
+          add_all(action->menu());
+        }
+      } else if (!action->isSeparator() && !action->text().isEmpty() && !found.contains(action)) {
+        found.append(action);
+      }
+    }
+  };
+  for (const QAction* top : menuBar()->actions()) {
+    add_all(top->menu());
+  }
+  return found;
+}
+
+void MainWindow::search_command() {
+  auto* search = new CommandSearch(commands(), this);
+  search->move(viewport_->mapToGlobal(QPoint((viewport_->width() - search->width()) / 2, 60)));
+  search->show();
+}
+
 void MainWindow::show_keys() {
-  QMessageBox::information(
-      this, tr("Keys and Mouse"),
-      tr("<table cellpadding='2'>"
-         "<tr><td><b>Middle button</b></td><td>orbit; with Shift pan; the wheel zooms</td></tr>"
-         "<tr><td><b>Click</b></td><td>select; Shift adds; drag for a box, with Ctrl for a "
-         "lasso</td></tr>"
-         "<tr><td><b>Double click</b></td><td>select a loop of edges, or a ring of faces</td></tr>"
-         "<tr><td><b>1 2 3</b></td><td>vertices, edges, faces</td></tr>"
-         "<tr><td><b>G R S</b></td><td>move, rotate, scale; then X Y Z for an axis, or a number; "
-         "Enter or click to end, Escape to cancel</td></tr>"
-         "<tr><td><b>F, Home</b></td><td>frame the selection, everything</td></tr>"
-         "<tr><td><b>[ ]</b></td><td>show the boxes less or more deeply cut</td></tr>"
-         "<tr><td><b>C</b></td><td>hold to compare with rest</td></tr>"
-         "<tr><td><b>K, Space</b></td><td>set a keyframe, play</td></tr></table>"));
+  const auto row = [](const QString& keys, const QString& what) {
+    return QString("<tr><td><b>%1</b></td><td>%2</td></tr>")
+        .arg(keys.toHtmlEscaped(), what.toHtmlEscaped());
+  };
+  QString text = tr("<h3>Mouse</h3>") + "<table cellpadding='3'>";
+  for (const auto& [button, effect] : mouse_help(viewport_->key_map())) {
+    text += row(button, effect);
+  }
+  text += "</table>" + tr("<h3>Keys in the view</h3>") + "<table cellpadding='3'>";
+  text += viewport_->key_map() == KeyMap::maya
+              ? row("Q, W, E, R", tr("tools: select, move, rotate, scale"))
+              : row("G, R, S", tr("move, rotate, scale at once"));
+  text += row("X, Y, Z", tr("while doing so: along an axis; with Shift in the plane across it"));
+  text += row(tr("0-9 . -"), tr("while doing so: exact numbers; Tab: the next one"));
+  text += row(tr("Enter, click"), tr("while doing so: done"));
+  text += row(tr("Esc, right button, Ctrl+Z"), tr("while doing so: take it back"));
+  text += row(tr("Ctrl, Shift"), tr("while doing so: snap, precise"));
+  text += row("B", tr("select by a box that may begin anywhere"));
+  text += row("O", tr("proportional editing; the wheel changes how far it reaches"));
+  text += row("M", tr("select the mirror images, too"));
+  text += row("L", tr("select what hangs together"));
+  text += row("X", tr("delete"));
+  text += row("C", tr("hold to see the model at rest"));
+  text += row(tr("Keypad 1 3 7 9 5"), tr("front, right, top, opposite, orthographic; Ctrl: from "
+                                         "the other side"));
+  text += row(tr("Arrows, keypad 2 4 6 8"), tr("turn the view"));
+  text += "</table>" + tr("<h3>Commands</h3>") + "<table cellpadding='3'>";
+  for (const QAction* command : commands()) {
+    QStringList keys;
+    for (const QKeySequence& key : command->shortcuts()) {
+      keys.append(key.toString(QKeySequence::NativeText));
+    }
+    if (!keys.isEmpty()) {
+      text += row(keys.join(", "), plain_text(*command));
+    }
+  }
+  text += "</table>";
+  auto* dialog = new QDialog(this);
+  dialog->setObjectName("keys_page");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(tr("Keys and Mouse"));
+  auto* layout = new QVBoxLayout(dialog);
+  auto* page = new QTextBrowser;
+  page->setHtml(text);
+  layout->addWidget(page);
+  dialog->resize(560, 640);
+  dialog->show(); // beside the work
 }
 
 // ---- Files
@@ -411,10 +578,13 @@ void MainWindow::choose_model() {
   }
 }
 
-void MainWindow::choose_cage() {
+QString MainWindow::ask_for_model(const QString& title) {
   const QString start = QSettings().value("last_folder").toString();
-  const QString path =
-      QFileDialog::getOpenFileName(this, tr("Load a Cage"), start, model_filter(false));
+  return QFileDialog::getOpenFileName(this, title, start, model_filter(false));
+}
+
+void MainWindow::choose_cage() {
+  const QString path = ask_for_model(tr("Load a Cage"));
   if (!path.isEmpty()) {
     session_.load_cage(path.toStdString());
   }
@@ -427,6 +597,15 @@ void MainWindow::choose_export(const QString& title, const QString& name, const 
   dialog.setFileMode(QFileDialog::AnyFile);
   dialog.setDefaultSuffix(QFileInfo(name).suffix()); // for names without an extension
   dialog.selectFile(QFileInfo(name).fileName());
+  connect(&dialog, &QFileDialog::filterSelected, &dialog, [&dialog](const QString& chosen) {
+    static const QRegularExpression first("\\*\\.(\\w+)");
+    const QString suffix = first.match(chosen).captured(1);
+    const QStringList selected = dialog.selectedFiles();
+    if (!suffix.isEmpty() && !selected.isEmpty()) {
+      dialog.setDefaultSuffix(suffix);
+      dialog.selectFile(QFileInfo(selected.first()).completeBaseName() + "." + suffix);
+    }
+  });
   if (dialog.exec() == QDialog::Accepted && !dialog.selectedFiles().isEmpty()) {
     write(dialog.selectedFiles().first().toStdString());
   }

@@ -26,6 +26,8 @@ Preferences Preferences::load() {
   p.ask_before_closing = settings.value("ask_before_closing", p.ask_before_closing).toBool();
   p.z_up = settings.value("z_up", p.z_up).toBool();
   p.coarse_while_moving = settings.value("coarse_while_moving", p.coarse_while_moving).toBool();
+  p.key_map = settings.value("key_map", p.key_map).toString();
+  p.wheel_reversed = settings.value("wheel_reversed", p.wheel_reversed).toBool();
   p.hints = settings.value("hints", p.hints).toBool();
   return p;
 }
@@ -37,6 +39,8 @@ void Preferences::save() const {
   settings.setValue("ask_before_closing", ask_before_closing);
   settings.setValue("z_up", z_up);
   settings.setValue("coarse_while_moving", coarse_while_moving);
+  settings.setValue("key_map", key_map);
+  settings.setValue("wheel_reversed", wheel_reversed);
   settings.setValue("hints", hints);
 }
 
@@ -74,6 +78,19 @@ PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* pa
   up->setCurrentIndex(preferences_.z_up ? 1 : 0);
   up->setToolTip(tr("How models stand in the view. Files are written as they were read"));
   form->addRow(tr("Up"), up);
+  auto* keys = new QComboBox;
+  keys->setObjectName("key_map");
+  keys->addItem(tr("As in Blender"), "blender");
+  keys->addItem(tr("As in Maya"), "maya");
+  keys->addItem(tr("Three buttons: turn, pan, zoom"), "three_button");
+  keys->setCurrentIndex(std::max(0, keys->findData(preferences_.key_map)));
+  keys->setToolTip(tr("Which buttons and keys do what; Help, Keys and Mouse has them all"));
+  form->addRow(tr("Keys and mouse"), keys);
+  auto* wheel = new QComboBox;
+  wheel->setObjectName("wheel");
+  wheel->addItems({tr("Forward: nearer"), tr("Forward: farther")});
+  wheel->setCurrentIndex(preferences_.wheel_reversed ? 1 : 0);
+  form->addRow(tr("Wheel"), wheel);
   auto* autosave = new QSpinBox;
   autosave->setRange(0, 3600);
   autosave->setSuffix(tr(" s"));
@@ -93,6 +110,10 @@ PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* pa
           [this, theme] { preferences_.theme = theme->currentData().toString(); });
   connect(up, &QComboBox::currentIndexChanged, this,
           [this](int at) { preferences_.z_up = at == 1; });
+  connect(keys, &QComboBox::currentIndexChanged, this,
+          [this, keys] { preferences_.key_map = keys->currentData().toString(); });
+  connect(wheel, &QComboBox::currentIndexChanged, this,
+          [this](int at) { preferences_.wheel_reversed = at == 1; });
   connect(autosave, &QSpinBox::valueChanged, this,
           [this](int value) { preferences_.autosave_seconds = value; });
   connect(ask, &QCheckBox::toggled, this,

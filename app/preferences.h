@@ -14,7 +14,9 @@ struct Preferences {
   bool ask_before_closing = true;
   bool z_up = false;               ///< models stand upright along z, not y
   bool coarse_while_moving = true; ///< large models, where drawing them is slow
-  bool hints = true;               ///< the bar with the next step
+  QString key_map = "blender";     ///< see key_map.h
+  bool wheel_reversed = false;
+  bool hints = true; ///< the bar with the next step
 
   static Preferences load();
   void save() const;

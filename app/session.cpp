@@ -11,6 +11,7 @@
 #include <QSet>
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace cagewright::app {
@@ -43,6 +44,13 @@ QString with_notes(QString text, const std::vector<FileNote>& notes) {
   return text;
 }
 
+/// Parts of the model are where they should not be: the cage may be another unit's, or elsewhere.
+bool does_not_enclose(const ValidityReport& report) {
+  using enum ViolationKind;
+  return report.count(vertex_outside) + report.count(vertex_on_cage) + report.count(face_contact) >
+         0;
+}
+
 SharedPositions shared(std::span<const Vec3> positions) {
   return std::make_shared<const std::vector<Vec3>>(positions.begin(), positions.end());
 }
@@ -66,6 +74,16 @@ Session::Session(QObject* parent)
     if (waiting_ && !jobs_.busy()) {
       Waiting next = *std::exchange(waiting_, std::nullopt);
       start(next.title, std::move(next.work));
+    }
+  });
+  connect(&document_, &Document::densityChanged, this, [this] {
+    // What was painted is meant to be used.
+    const bool painted = document_.state().density != nullptr;
+    const bool used = settings_.density == DensitySource::painted;
+    if (painted != used) {
+      GenerateSettings settings = settings_;
+      settings.density = painted ? DensitySource::painted : DensitySource::even;
+      set_settings(settings);
     }
   });
   connect(&editor_.undo_stack(), &QUndoStack::cleanChanged, this, &Session::titleChanged);
@@ -132,12 +150,12 @@ bool Session::report(const QString& title, const Status& status) {
 
 // ---- Opening
 
-void Session::open(const fs::path& path, const fs::path& cage) {
+void Session::open(const fs::path& path, const fs::path& cage, Then then) {
   if (is_project(path)) {
     open_project(path, {}, false);
     return;
   }
-  start_next(tr("Open"), [this, path, cage](const Progress& progress) -> Result<Job::Apply> {
+  start_next(tr("Open"), [this, path, cage, then](const Progress& progress) -> Result<Job::Apply> {
     Result<std::shared_ptr<const Model>> model = app::open_model(path, progress.part(0, 0.9));
     if (!model) {
       return model.error();
@@ -150,7 +168,7 @@ void Session::open(const fs::path& path, const fs::path& cage) {
       }
       mesh = *read;
     }
-    return Job::Apply([this, path, model = *model, mesh] {
+    return Job::Apply([this, path, then, model = *model, mesh] {
       document_.set_model(model);
       if (mesh) {
         editor_.replace_cage(mesh, nullptr, tr("Load Cage"));
@@ -166,8 +184,50 @@ void Session::open(const fs::path& path, const fs::path& cage) {
                                     .arg(model->mesh.positions.size())
                                     .arg(model->triangles.size()),
                                 model->notes));
+      go_on(then);
     });
   });
+}
+
+void Session::add_model(const fs::path& path) {
+  if (!document_.has_model() || document_.model()->path.empty()) {
+    open(path);
+    return;
+  }
+  std::vector<fs::path> paths;
+  for (const ModelPart& part : document_.model()->parts) {
+    paths.push_back(part.origin.path);
+  }
+  paths.push_back(path);
+  start_next(
+      tr("Add Model"),
+      [this, paths, before = document_.model()](const Progress& progress) -> Result<Job::Apply> {
+        Result<std::shared_ptr<const Model>> model = open_models(paths, progress);
+        if (!model) {
+          return model.error();
+        }
+        return Job::Apply([this, paths, before, model = *model] {
+          if (document_.model() != before) {
+            return; // another one was opened meanwhile
+          }
+          editor_.refine();
+          State state = document_.state();
+          if (state.density) { // of the others' vertices
+            std::vector<float> density = *state.density;
+            density.resize(model->mesh.positions.size(), 0.0F);
+            state.density = std::make_shared<const std::vector<float>>(std::move(density));
+          }
+          state.stages.reset();
+          document_.set_model(model);
+          document_.set_state(state);
+          editor_.undo_stack().clear();
+          modified_ = true;
+          Q_EMIT titleChanged();
+          Q_EMIT message(tr("%1 was added: %L2 vertices together")
+                             .arg(name_of(paths.back()))
+                             .arg(model->mesh.positions.size()));
+        });
+      });
 }
 
 void Session::load_cage(const fs::path& path) {
@@ -218,8 +278,9 @@ void Session::open_project(const fs::path& path, const fs::path& model_path, boo
         std::shared_ptr<const Model> model;
         std::shared_ptr<const Binding> binding;
         if (!project.model_path.empty()) {
-          Result<std::shared_ptr<const Model>> opened =
-              app::open_model(project.model_path, progress.part(0, 0.4));
+          std::vector<fs::path> paths = {project.model_path};
+          paths.insert(paths.end(), project.more_models.begin(), project.more_models.end());
+          Result<std::shared_ptr<const Model>> opened = open_models(paths, progress.part(0, 0.4));
           if (!opened) {
             return opened.error();
           }
@@ -265,6 +326,10 @@ void Session::restore(const Project& project, std::shared_ptr<const Model> model
                       std::shared_ptr<const Binding> binding) {
   document_.set_model(std::move(model));
   State state = project.state;
+  if (state.density && (!document_.has_model() ||
+                        state.density->size() != document_.model()->mesh.positions.size())) {
+    state.density.reset(); // of another model
+  }
   state.binding = std::move(binding);
   document_.set_state(state);
   editor_.undo_stack().clear();
@@ -285,9 +350,9 @@ void Session::generate() {
     return;
   }
   start(tr("Generate"),
-        [this, model = document_.model(),
-         settings = settings_](const Progress& progress) -> Result<Job::Apply> {
-          Result<MadeCage> made = make_cage(*model, settings, progress);
+        [this, model = document_.model(), settings = settings_,
+         painted = document_.state().density](const Progress& progress) -> Result<Job::Apply> {
+          Result<MadeCage> made = make_cage(*model, settings, painted, progress);
           if (!made) {
             return made.error();
           }
@@ -344,10 +409,14 @@ void Session::bind(Doubts doubts) {
               return judged.error();
             }
             if (!binds_well(*judged->report)) {
-              return Job::Apply([this, report = judged->report] {
+              BindingDoubts found{judged->report, {}};
+              if (does_not_enclose(*judged->report)) {
+                found.fit = fit_cage(*rest, model->view());
+              }
+              return Job::Apply([this, found] {
                 // Not before the job has ended: what is answered may start another.
                 QMetaObject::invokeMethod(
-                    this, [this, report] { Q_EMIT bindingDoubtful(report); }, Qt::QueuedConnection);
+                    this, [this, found] { Q_EMIT bindingDoubtful(found); }, Qt::QueuedConnection);
               });
             }
           }
@@ -379,23 +448,88 @@ void Session::switch_mode() {
   }
 }
 
-void Session::weld_cage_and_bind() {
-  if (document_.has_cage()) {
-    // Near enough to be one vertex, and far less than a cage has between two.
-    constexpr double tolerance = 1e-4;
-    const PolygonMesh welded = welded_cage(document_.cage(), tolerance * document_.diagonal());
-    editor_.replace_cage(std::make_shared<const PolygonMesh>(welded), nullptr, tr("Weld Cage"));
-    bind();
+bool Session::can_repair(const QString& title) {
+  if (document_.has_cage() && document_.mode() == Mode::refine) {
+    return true;
+  }
+  Q_EMIT message(
+      document_.has_cage()
+          ? tr("%1: the model is bound to this cage; go back to refining first").arg(title)
+          : tr("%1: there is no cage yet").arg(title));
+  return false;
+}
+
+void Session::go_on(Then then) {
+  if (then == Then::bind) {
+    // Not before a job that has led here has ended.
+    QMetaObject::invokeMethod(
+        this, [this] { bind(); }, Qt::QueuedConnection);
   }
 }
 
-void Session::turn_cage_outward_and_bind() {
-  if (document_.has_cage()) {
-    const PolygonMesh turned = turned_outward(document_.cage());
-    editor_.replace_cage(std::make_shared<const PolygonMesh>(turned), nullptr,
-                         tr("Turn Cage Inside Out"));
-    bind();
+void Session::fit_cage_to_model(Then then) {
+  const QString title = tr("Fit Cage to Model");
+  if (!can_repair(title)) {
+    return;
   }
+  if (!document_.has_model()) {
+    Q_EMIT message(tr("%1: there is no model yet").arg(title));
+    return;
+  }
+  const auto rest = std::make_shared<const PolygonMesh>(document_.cage());
+  start(title,
+        [this, title, then, rest, cage = document_.state().cage,
+         model = document_.model()](const Progress&) -> Result<Job::Apply> {
+          const std::optional<CageFit> fit = fit_cage(*rest, model->view());
+          return Job::Apply([this, title, then, rest, cage, model, fit] {
+            if (document_.model() != model || document_.state().cage != cage) {
+              return; // another one meanwhile
+            }
+            if (!fit) {
+              Q_EMIT message(
+                  tr("%1: no scale, turn or shift would make this cage fit better").arg(title));
+              return;
+            }
+            editor_.adjust_cage(std::make_shared<const PolygonMesh>((*fit)(*rest)), *fit, title);
+            Q_EMIT message(tr("The cage is %1").arg(QString::fromStdString(fit->description)));
+            go_on(then);
+          });
+        });
+}
+
+void Session::weld_cage(Then then) {
+  const QString title = tr("Weld Cage");
+  if (!can_repair(title)) {
+    return;
+  }
+  // Near enough to be one vertex, and far less than a cage has between two.
+  constexpr double tolerance = 1e-4;
+  const PolygonMesh before = document_.cage();
+  PolygonMesh welded = welded_cage(before, tolerance * document_.diagonal());
+  if (welded.positions.size() == before.positions.size()) {
+    Q_EMIT message(tr("%1: no vertices are in one place").arg(title));
+  } else {
+    const std::size_t gone = before.positions.size() - welded.positions.size();
+    editor_.replace_cage(std::make_shared<const PolygonMesh>(std::move(welded)), nullptr, title);
+    Q_EMIT message(tr("%L1 vertices fewer").arg(gone));
+  }
+  go_on(then);
+}
+
+void Session::turn_cage_outward(Then then) {
+  const QString title = tr("Turn Cage Inside Out");
+  if (!can_repair(title)) {
+    return;
+  }
+  const PolygonMesh before = document_.cage();
+  PolygonMesh turned = turned_outward(before);
+  if (std::ranges::equal(turned.corners(), before.corners())) {
+    Q_EMIT message(tr("%1: all faces look outward").arg(title));
+  } else {
+    editor_.adjust_cage(std::make_shared<const PolygonMesh>(std::move(turned)), std::identity(),
+                        title);
+  }
+  go_on(then);
 }
 
 // ---- Keeping
@@ -408,7 +542,12 @@ QString Session::title() const {
   if (!project_path_.empty()) {
     return name_of(project_path_);
   }
-  return document_.has_model() ? name_of(document_.model()->path) : QString();
+  if (!document_.has_model()) {
+    return {};
+  }
+  const std::size_t more = document_.model()->parts.size() - 1;
+  const QString first = name_of(document_.model()->path);
+  return more == 0 ? first : tr("%1 and %2 more").arg(first).arg(more);
 }
 
 Project Session::project() const {
@@ -417,6 +556,10 @@ Project Session::project() const {
     std::error_code error;
     project.model_path = fs::absolute(document_.model()->path, error);
     project.model_checksum = document_.model()->checksum;
+    const std::vector<ModelPart>& parts = document_.model()->parts;
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      project.more_models.push_back(fs::absolute(parts[i].origin.path, error));
+    }
   }
   project.state = document_.state();
   project.state.binding.reset();
@@ -529,6 +672,24 @@ void Session::export_sequence(const fs::path& path, int step) {
     poses.push_back(shared(cage_at(line, frame)));
   }
   start_export(tr("Export Sequence"), std::move(paths), std::move(poses));
+}
+
+void Session::export_animation(const fs::path& path) {
+  const QString title = tr("Export Animation");
+  if (document_.mode() != Mode::deform || document_.state().time_line.keys.empty()) {
+    Q_EMIT failed(title, tr("There are no keyframes yet. Set some in the panel Time Line."));
+    return;
+  }
+  start(
+      title,
+      [this, path, model = document_.model(), rest = document_.state().rest,
+       line = document_.state().time_line](const Progress& progress) -> Result<Job::Apply> {
+        if (Status s = app::export_animation(*model, *rest, line, path, progress); !s) {
+          return s.error();
+        }
+        return Job::Apply([this, path] { Q_EMIT message(tr("Wrote %1").arg(name_of(path))); });
+      },
+      Kind::writes);
 }
 
 void Session::export_weights(const fs::path& path) {

@@ -9,6 +9,7 @@
 #include "app/jobs/checker.h"
 #include "app/jobs/deform_loop.h"
 #include "app/jobs/job_runner.h"
+#include <cagewright/validate/fit.h>
 
 #include <QObject>
 #include <QString>
@@ -25,6 +26,12 @@ struct Question {
   QString title;
   QString text;
   QString go_on; ///< what the button says; the other one cancels
+};
+
+/// Why a cage is not bound at once.
+struct BindingDoubts {
+  std::shared_ptr<const ValidityReport> report;
+  std::optional<CageFit> fit; ///< what would make the cage fit as a whole
 };
 
 /// One document and all that works on it. What takes time runs as a job and leaves the window
@@ -47,10 +54,14 @@ public:
 
   // ---- Opening. Each replaces what is open; asking whether to keep that is up to the window.
 
-  /// A project, or a model and perhaps a cage for it.
-  void open(const std::filesystem::path& path, const std::filesystem::path& cage = {});
+  enum class Then { stay, bind };
+  /// A project, or a model and perhaps a cage for it, to which it may be bound at once.
+  void open(const std::filesystem::path& path, const std::filesystem::path& cage = {},
+            Then then = Then::stay);
   /// A cage for the model that is open.
   void load_cage(const std::filesystem::path& path);
+  /// Another model beside the one that is open, under the same cage. What is bound is unbound.
+  void add_model(const std::filesystem::path& path);
   /// Another place for the project's model that was not found.
   void open_project_with_model(const std::filesystem::path& project,
                                const std::filesystem::path& model);
@@ -70,9 +81,14 @@ public:
   void refine();
   /// Refine mode becomes deform mode, and back.
   void switch_mode();
-  /// What bindingDoubtful() may be answered by. Each changes the cage, and binds again.
-  void weld_cage_and_bind();
-  void turn_cage_outward_and_bind();
+
+  /// What makes a cage from elsewhere fit; in refine mode. Each says so if there is nothing to do.
+  /// Scales, turns and shifts the cage as a whole: see fit_cage().
+  void fit_cage_to_model(Then then = Then::stay);
+  /// Makes vertices that are very near to each other on open edges one.
+  void weld_cage(Then then = Then::stay);
+  /// Turns all faces outward.
+  void turn_cage_outward(Then then = Then::stay);
   void cancel() { jobs_.cancel(); }
 
   // ---- Keeping
@@ -96,6 +112,8 @@ public:
   void export_poses(const std::filesystem::path& path);
   /// A file for each frame of the time line, every `step` frames: "-0001" and so on.
   void export_sequence(const std::filesystem::path& path, int step);
+  /// The time line as one file that moves: .glb, .pc2 or .mdd.
+  void export_animation(const std::filesystem::path& path);
   void export_weights(const std::filesystem::path& path);
 
 Q_SIGNALS:
@@ -108,7 +126,7 @@ Q_SIGNALS:
   /// The model of a project is not where it was, or is another one.
   void modelMissing(const QString& project, const QString& model);
   /// The cage is not a valid one of the model, or not at all: ask, and bind() again.
-  void bindingDoubtful(const std::shared_ptr<const cagewright::ValidityReport>& report);
+  void bindingDoubtful(const cagewright::app::BindingDoubts& doubts);
 
 private:
   [[nodiscard]] Project project() const;
@@ -126,6 +144,9 @@ private:
   /// Asks whether poses and deformations that only fit the present cage may go.
   [[nodiscard]] bool may_replace_cage(const QString& title, const QString& go_on);
   bool report(const QString& title, const Status& status);
+  /// Whether the cage can be changed as a whole; says why not.
+  bool can_repair(const QString& title);
+  void go_on(Then then);
 
   Document document_;
   Editor editor_;

@@ -65,7 +65,12 @@ void apply_theme(QApplication& application, Theme theme) {
   QApplication::setPalette(theme == Theme::dark ? dark_palette() : light_palette());
   application.setStyleSheet(
       "QToolTip { padding: 3px; } "
-      "QDockWidget { font-weight: bold; } QDockWidget > QWidget { font-weight: normal; }");
+      "QDockWidget { font-weight: bold; } QDockWidget > QWidget { font-weight: normal; } "
+      // What is on is seen at a glance, in light and dark.
+      "QToolBar QToolButton { padding: 3px 6px; border-radius: 3px; border: none; } "
+      "QToolBar QToolButton:hover { background: rgba(128, 128, 128, 70); } "
+      "QToolBar QToolButton:checked { background: palette(highlight); "
+      "color: palette(highlighted-text); }");
 }
 
 } // namespace cagewright::app

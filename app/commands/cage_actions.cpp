@@ -1,8 +1,10 @@
 #include "app/commands/cage_actions.h"
 
 #include "app/edit/edit_cage.h"
+#include "app/edit/hidden.h"
 #include "app/edit/mirror_edit.h"
 
+#include <array>
 #include <utility>
 
 namespace cagewright::app {
@@ -73,6 +75,33 @@ Selection selected_anew(CageAction action, const Document& document, const CageG
   }
 }
 
+bool put_out_of_sight(CageAction action, Editor& editor, const CageGraph& graph) {
+  const State& state = editor.document().state();
+  const bool anything_hidden = !state.hidden_faces.empty();
+  if (action == CageAction::reveal || (action == CageAction::isolate && anything_hidden)) {
+    if (!anything_hidden) {
+      Q_EMIT editor.message(Editor::tr("nothing is hidden"));
+      return false;
+    }
+    editor.hide_faces({}, Editor::tr("Show All"));
+    return true;
+  }
+  if (state.selection.empty()) {
+    Q_EMIT editor.message(Editor::tr("select something first"));
+    return false;
+  }
+  std::vector<Index> hidden = action == CageAction::hide
+                                  ? hidden_with(state.selection, graph, state.hidden_faces)
+                                  : hidden_but(state.selection, graph);
+  if (hidden == state.hidden_faces) {
+    Q_EMIT editor.message(Editor::tr("there is nothing else"));
+    return false;
+  }
+  editor.hide_faces(std::move(hidden),
+                    action == CageAction::hide ? Editor::tr("Hide") : Editor::tr("Isolate"));
+  return true;
+}
+
 Result<EditedCage> edited(CageAction action, const PolygonMesh& cage, const Selection& selection,
                           const CageGraph& graph) {
   const Selection edges = converted(selection, SelectionMode::edge, graph);
@@ -128,6 +157,21 @@ Result<EditedCage> edited_alike(CageAction action, Editor& editor, const Polygon
 
 } // namespace
 
+const char* command_name(CageAction action) {
+  // In the order of the actions.
+  static constexpr std::array<const char*, 22> names = {
+      "select_all",  "select_none", "invert",
+      "grow",        "shrink",      "select_linked",
+      "select_loop", "select_ring", "mirror_selection",
+      "vertex_mode", "edge_mode",   "face_mode",
+      "hide",        "isolate",     "reveal",
+      "split",       "split_ring",  "collapse",
+      "flip",        "subdivide",   "remove",
+      "extrude"};
+  static_assert(names.size() == static_cast<std::size_t>(CageAction::extrude) + 1);
+  return names[static_cast<std::size_t>(action)];
+}
+
 bool changes_topology(CageAction action) {
   return action >= CageAction::split;
 }
@@ -154,6 +198,10 @@ bool perform(CageAction action, Editor& editor) {
     if (action == CageAction::mirror_selection && !cage_symmetry(document)) {
       Q_EMIT editor.message(Editor::tr("the cage is not symmetric about that plane"));
       return false;
+    }
+    if (action == CageAction::hide || action == CageAction::isolate ||
+        action == CageAction::reveal) {
+      return put_out_of_sight(action, editor, graph);
     }
     const Selection before = document.selection();
     editor.select(selected_anew(action, document, graph));

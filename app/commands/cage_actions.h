@@ -25,7 +25,10 @@ enum class CageAction {
   vertex_mode,
   edge_mode,
   face_mode,
-  split, ///< selected edges; in face mode the same as subdivide
+  hide,    ///< the selection
+  isolate, ///< hides all but the selection; if something is hidden: shows everything
+  reveal,  ///< shows everything
+  split,   ///< selected edges; in face mode the same as subdivide
   split_ring,
   collapse,
   flip,
@@ -33,6 +36,9 @@ enum class CageAction {
   remove,
   extrude,
 };
+
+/// What it is called in menus, key maps and tests: "select_all".
+const char* command_name(CageAction action);
 
 /// \returns false if it did nothing
 bool perform(CageAction action, Editor& editor);

@@ -2,6 +2,7 @@
 
 #include "app/commands/change_state.h"
 #include "app/document/time_line.h"
+#include "app/edit/hidden.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,6 +10,15 @@
 namespace cagewright::app {
 
 namespace {
+
+/// The cage is as the pose is, or, if there is none of that number, as none is.
+void take_only(std::size_t pose, std::vector<Pose>& poses) {
+  for (std::size_t p = 0; p < poses.size(); ++p) {
+    poses[p].share = p == pose ? 1 : 0;
+  }
+}
+
+constexpr std::size_t no_pose = ~std::size_t{0};
 
 /// The same shape of a cage that is at rest elsewhere: what a pose moves, it moves from there.
 SharedPositions moved_along(const SharedPositions& pose, const std::vector<Vec3>& old_rest,
@@ -109,6 +119,10 @@ void Editor::move(std::vector<Index> vertices, std::span<const Vec3> positions,
 }
 
 void Editor::select(Selection selection) {
+  if (!document_.state().hidden_faces.empty()) { // what cannot be seen is not selected
+    const CageGraph graph(document_.cage_rest());
+    selection = in_sight(selection, graph, InSight(graph, document_.state().hidden_faces));
+  }
   if (selection == document_.selection()) {
     return;
   }
@@ -117,15 +131,34 @@ void Editor::select(Selection selection) {
   change(std::move(state), tr("Select"));
 }
 
+void Editor::hide_faces(std::vector<Index> faces, const QString& text) {
+  State state = document_.state();
+  if (faces == state.hidden_faces) {
+    return;
+  }
+  state.hidden_faces = std::move(faces);
+  if (state.rest) {
+    const CageGraph graph(*state.rest);
+    state.selection = in_sight(state.selection, graph, InSight(graph, state.hidden_faces));
+  }
+  change(std::move(state), text);
+}
+
 void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
                           std::shared_ptr<const BoxDecomposition> stages, const QString& text) {
   tell_of_lost_poses();
-  State state;
+  State state = without_cage();
   state.selection.mode = document_.selection().mode;
   state.stages = stages ? std::move(stages) : document_.stages();
   state.cage = std::make_shared<const std::vector<Vec3>>(cage->positions);
   state.rest = std::move(cage);
   change(std::move(state), text);
+}
+
+State Editor::without_cage() const {
+  State state;
+  state.density = document_.state().density;
+  return state;
 }
 
 void Editor::tell_of_lost_poses() {
@@ -140,11 +173,30 @@ void Editor::tell_of_lost_poses() {
 
 void Editor::edit_topology(PolygonMesh cage, Selection selection, const QString& text) {
   tell_of_lost_poses();
-  State state;
+  State state = without_cage();
   state.selection = std::move(selection);
   state.stages = document_.stages();
   state.cage = std::make_shared<const std::vector<Vec3>>(cage.positions);
   state.rest = std::make_shared<const PolygonMesh>(std::move(cage));
+  change(std::move(state), text);
+}
+
+void Editor::adjust_cage(std::shared_ptr<const PolygonMesh> cage,
+                         const std::function<Vec3(const Vec3&)>& map, const QString& text) {
+  State state = document_.state();
+  const auto mapped = [&](const SharedPositions& positions) -> SharedPositions {
+    std::vector<Vec3> result = *positions;
+    std::ranges::transform(result, result.begin(), map);
+    return std::make_shared<const std::vector<Vec3>>(std::move(result));
+  };
+  for (Pose& pose : state.poses) {
+    pose.positions = mapped(pose.positions);
+  }
+  for (Keyframe& key : state.time_line.keys) {
+    key.positions = mapped(key.positions);
+  }
+  state.cage = std::make_shared<const std::vector<Vec3>>(cage->positions);
+  state.rest = std::move(cage);
   change(std::move(state), text);
 }
 
@@ -158,6 +210,8 @@ void Editor::bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const 
       key.positions = moved_along(key.positions, state.rest->positions, rest->positions);
     }
   }
+  state.pins.clear();
+  take_only(no_pose, state.poses);
   state.binding = std::move(binding);
   state.cage = std::make_shared<const std::vector<Vec3>>(rest->positions);
   state.rest = std::move(rest);
@@ -171,10 +225,12 @@ void Editor::refine() {
   }
   if (deformation_is_unkept()) {
     const QString name = free_pose_name(tr("Last pose"));
-    state.poses.push_back({name, state.cage});
+    state.poses.push_back({name, state.cage, 0});
     Q_EMIT message(tr("The deformation is kept as the pose \"%1\"").arg(name));
   }
   state.binding.reset();
+  state.pins.clear();
+  take_only(no_pose, state.poses);
   state.cage = std::make_shared<const std::vector<Vec3>>(state.rest->positions);
   change(std::move(state), tr("Refine Cage"));
 }
@@ -203,19 +259,26 @@ void Editor::reset_pose() {
     return;
   }
   state.cage = std::make_shared<const std::vector<Vec3>>(state.rest->positions);
+  take_only(no_pose, state.poses);
   change(std::move(state), tr("Reset"));
 }
 
 void Editor::add_pose(const QString& name) {
   document_.adopt_shown_cage();
   State state = document_.state();
-  state.poses.push_back({name, state.cage});
+  state.poses.push_back({name, state.cage, 1});
+  take_only(state.poses.size() - 1, state.poses);
   change(std::move(state), tr("Add Pose"));
 }
 
 void Editor::remove_pose(std::size_t pose) {
   State state = document_.state();
   state.poses.erase(state.poses.begin() + static_cast<std::ptrdiff_t>(pose));
+  for (Keyframe& key : state.time_line.keys) {
+    if (pose < key.shares.size()) {
+      key.shares.erase(key.shares.begin() + static_cast<std::ptrdiff_t>(pose));
+    }
+  }
   change(std::move(state), tr("Remove Pose"));
 }
 
@@ -231,6 +294,7 @@ void Editor::update_pose(std::size_t pose) {
   document_.adopt_shown_cage();
   State state = document_.state();
   state.poses[pose].positions = state.cage;
+  take_only(pose, state.poses);
   change(std::move(state), tr("Update Pose"));
 }
 
@@ -239,7 +303,55 @@ void Editor::apply_pose(std::size_t pose) {
   document_.set_blend(1);
   State state = document_.state();
   state.cage = state.poses[pose].positions;
+  take_only(pose, state.poses);
   change(std::move(state), tr("Apply Pose"));
+}
+
+void Editor::begin_mix() {
+  begin_step();
+  document_.adopt_shown_cage();
+}
+
+void Editor::mix_pose(std::size_t pose, double share) {
+  const bool alone = !step_;
+  if (alone) {
+    begin_mix();
+  }
+  State state = document_.state();
+  if (pose < state.poses.size() && state.rest && share != state.poses[pose].share) {
+    const double more = share - state.poses[pose].share;
+    const std::vector<Vec3>& of_pose = *state.poses[pose].positions;
+    std::vector<Vec3> cage = *state.cage;
+    for (std::size_t v = 0; v < cage.size(); ++v) {
+      cage[v] += more * (of_pose[v] - state.rest->positions[v]);
+    }
+    state.poses[pose].share = share;
+    state.cage = std::make_shared<const std::vector<Vec3>>(std::move(cage));
+    document_.set_state(state);
+  }
+  if (alone) {
+    end_mix();
+  }
+}
+
+void Editor::end_mix() {
+  if (step_ && step_->before.cage == document_.state().cage) {
+    cancel_step();
+  } else {
+    end_step(tr("Mix Poses"));
+  }
+}
+
+void Editor::set_pins(std::vector<Pin> pins, const QString& text) {
+  State state = document_.state();
+  state.pins = std::move(pins);
+  change(std::move(state), text);
+}
+
+void Editor::set_density(SharedDensity density, const QString& text) {
+  State state = document_.state();
+  state.density = std::move(density);
+  change(std::move(state), text);
 }
 
 void Editor::set_keyframe(int frame) {
@@ -248,7 +360,8 @@ void Editor::set_keyframe(int frame) {
   State state = document_.state();
   state.time_line =
       with_keyframe(std::move(state.time_line),
-                    {frame, std::make_shared<const std::vector<Vec3>>(shown.begin(), shown.end())});
+                    {frame, std::make_shared<const std::vector<Vec3>>(shown.begin(), shown.end()),
+                     document_.shown_pose_shares()});
   change(std::move(state), tr("Set Keyframe"));
 }
 

@@ -9,6 +9,7 @@
 #include <QString>
 #include <QUndoStack>
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -61,14 +62,20 @@ public:
 
   // ---- The cage as a whole
 
-  /// Another selection.
+  /// Another selection; what is hidden stays out of it.
   void select(Selection selection);
+  /// Puts these faces (ascending) out of sight, and all others in sight.
+  void hide_faces(std::vector<Index> faces, const QString& text);
   /// Another cage, to be refined; with the stages it was made from, or the present ones.
   void replace_cage(std::shared_ptr<const PolygonMesh> cage,
                     std::shared_ptr<const BoxDecomposition> stages, const QString& text);
   /// The cage after an edit of its topology, in refine mode: vertices and faces as they come. Poses
   /// and keyframes, which fit the old one, go.
   void edit_topology(PolygonMesh cage, Selection selection, const QString& text);
+  /// The same vertices otherwise, in refine mode: turned faces, or all positions p at map(p). Poses
+  /// and keyframes go along.
+  void adjust_cage(std::shared_ptr<const PolygonMesh> cage,
+                   const std::function<Vec3(const Vec3&)>& map, const QString& text);
   /// To deform mode: `rest` is the cage that the binding was made for, with the topology of the
   /// present one. Poses and keyframes keep what they move from the rest, wherever that is now.
   void bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const PolygonMesh> rest);
@@ -90,6 +97,17 @@ public:
   /// The cage takes the pose.
   void apply_pose(std::size_t pose);
 
+  /// So much of a pose is in the cage from now on: what the pose moves from the rest is added so
+  /// often, whatever else moved the cage. In begin_mix() and end_mix() one step of undo.
+  void mix_pose(std::size_t pose, double share);
+  void begin_mix();
+  void end_mix();
+
+  /// The points by which the model is dragged.
+  void set_pins(std::vector<Pin> pins, const QString& text);
+  /// Where the cage is to be finer; null: nowhere.
+  void set_density(SharedDensity density, const QString& text);
+
   void set_keyframe(int frame);
   void remove_keyframe(int frame);
   void set_time_line(TimeLine time_line, const QString& text);
@@ -103,6 +121,8 @@ Q_SIGNALS:
 
 private:
   void tell_of_lost_poses();
+  /// What stays when the cage becomes another.
+  [[nodiscard]] State without_cage() const;
   [[nodiscard]] QString free_pose_name(const QString& name) const;
 
   struct Move {

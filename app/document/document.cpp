@@ -32,14 +32,14 @@ void cut_to(Selection& selection, const PolygonMesh* cage) {
 
 bool same_poses(const std::vector<Pose>& a, const std::vector<Pose>& b) {
   return std::ranges::equal(a, b, [](const Pose& x, const Pose& y) {
-    return x.name == y.name && x.positions == y.positions;
+    return x.name == y.name && x.positions == y.positions && x.share == y.share;
   });
 }
 
 bool same_time_line(const TimeLine& a, const TimeLine& b) {
   return a.first == b.first && a.last == b.last && a.frames_per_second == b.frames_per_second &&
          std::ranges::equal(a.keys, b.keys, [](const Keyframe& x, const Keyframe& y) {
-           return x.frame == y.frame && x.positions == y.positions;
+           return x.frame == y.frame && x.positions == y.positions && x.shares == y.shares;
          });
 }
 
@@ -160,6 +160,10 @@ void Document::adopt_shown_cage() {
     time_.reset(); // a time line without keyframes shows the pose
     return;
   }
+  const std::vector<double> shares = shown_pose_shares();
+  for (std::size_t p = 0; p < shares.size(); ++p) {
+    state_.poses[p].share = shares[p];
+  }
   state_.cage = shown_;
   comparing_ = false;
   blend_ = 1;
@@ -167,6 +171,30 @@ void Document::adopt_shown_cage() {
   shown_.reset();
   Q_EMIT viewStateChanged();
   Q_EMIT cageMoved();
+}
+
+std::vector<double> Document::shown_pose_shares() const {
+  std::vector<double> shares;
+  if (mode() == Mode::deform && time_ && !state_.time_line.keys.empty()) {
+    shares = pose_shares_at(state_.time_line, *time_, state_.poses.size());
+  } else {
+    for (const Pose& pose : state_.poses) {
+      shares.push_back(pose.share);
+    }
+  }
+  for (double& share : shares) {
+    share *= comparing_ ? 0 : blend_;
+  }
+  return shares;
+}
+
+Vec3 Document::place_of(const Pin& pin) const {
+  const std::span<const Vec3> cage = shown_cage_positions();
+  Vec3 place = Vec3::Zero();
+  for (std::size_t c = 0; c < std::min(cage.size(), pin.weights->size()); ++c) {
+    place += (*pin.weights)[c] * cage[c];
+  }
+  return place;
 }
 
 void Document::update_shown() {
@@ -237,8 +265,20 @@ void Document::set_state(const State& state) {
   if (state_.selection != old.selection) {
     Q_EMIT selectionChanged();
   }
+  if (state_.hidden_faces != old.hidden_faces) {
+    Q_EMIT hiddenChanged();
+  }
   if (!same_poses(state_.poses, old.poses)) {
     Q_EMIT posesChanged();
+  }
+  if (!std::ranges::equal(state_.pins, old.pins, [](const Pin& a, const Pin& b) {
+        return a.triangle == b.triangle && a.shares == b.shares && a.weights == b.weights;
+      })) {
+    Q_EMIT pinsChanged();
+  }
+  if (state_.density != old.density) {
+    Q_EMIT colorsChanged();
+    Q_EMIT densityChanged();
   }
   if (!same_time_line(state_.time_line, old.time_line)) {
     frame_ = std::clamp<double>(frame_, state_.time_line.first, state_.time_line.last);
@@ -282,6 +322,12 @@ void Document::set_metrics(std::optional<CageMetrics> metrics) {
 void Document::set_deformed(std::shared_ptr<const DeformedModel> deformed) {
   deformed_ = std::move(deformed);
   Q_EMIT modelMoved();
+}
+
+void Document::set_density(SharedDensity density) {
+  state_.density = std::move(density);
+  Q_EMIT colorsChanged();
+  Q_EMIT densityChanged();
 }
 
 void Document::set_cage_distances(std::vector<float> distances) {

@@ -85,6 +85,11 @@ public:
   /// The cage with cage_positions().
   [[nodiscard]] PolygonMesh cage() const;
 
+  /// How much of each pose is in the cage as shown.
+  [[nodiscard]] std::vector<double> shown_pose_shares() const;
+  /// Where a pin is as shown.
+  [[nodiscard]] Vec3 place_of(const Pin& pin) const;
+
   [[nodiscard]] Mode mode() const { return state_.binding ? Mode::deform : Mode::refine; }
   [[nodiscard]] const Selection& selection() const { return state_.selection; }
   [[nodiscard]] const State& state() const { return state_; }
@@ -147,6 +152,7 @@ public:
   void set_offending_faces(std::vector<Index> faces);
   void set_metrics(std::optional<CageMetrics> metrics);
   void set_deformed(std::shared_ptr<const DeformedModel> deformed);
+  void set_density(SharedDensity density);
   void set_cage_distances(std::vector<float> distances);
   void set_model_weights(std::vector<float> weights);
 
@@ -156,11 +162,14 @@ Q_SIGNALS:
   void cageChanged();  ///< topology of the cage, or no cage any more; positions too
   void cageMoved();    ///< cage_positions() or shown_cage_positions(), nothing else
   void selectionChanged();
+  void hiddenChanged(); ///< State::hidden_faces
   void modeChanged();
   void stagesChanged();
   void checkChanged(); ///< check() or offending_faces()
   void metricsChanged();
-  void colorsChanged(); ///< cage_distances() or model_weights()
+  void colorsChanged();  ///< cage_distances(), model_weights() or State::density
+  void densityChanged(); ///< State::density
+  void pinsChanged();    ///< State::pins
   void layersChanged();
   void toolsChanged();
   void posesChanged();

@@ -70,8 +70,13 @@ GenerateOption of_library(const CageOption& option) {
   return {QString::fromUtf8(option.name.data(), static_cast<qsizetype>(option.name.size())),
           text(option.label), text(option.help), group_of(option),
           std::visit([](const auto& kind) { return Kind(row(kind)); }, option.kind),
-          // How the model is split into boxes is shown whatever the cage is made from.
+          // How the model is split into boxes is shown whatever the cage is made from, but not
+          // among what most people change.
           [&option](const GenerateSettings& s) {
+            if (group_of(option) == Group::basic && option.group == OptionGroup::boxes &&
+                s.options.method == Method::envelope) {
+              return false;
+            }
             return option.group == OptionGroup::boxes
                        ? option.condition == nullptr || option.condition(s.options)
                        : cagewright::applies(option, s.options);
@@ -85,13 +90,13 @@ bool is_improved(const GenerateSettings& s) {
 std::vector<GenerateOption> density_options() {
   return {
       {"density", text("Finer where"),
-       text("Where the cage gets more vertices. Painted: where vertex colors are red, and fewer "
+       text("Where the cage gets more vertices. Colors: where vertex colors are red, and fewer "
             "where they are blue. File: one number for each vertex of the model; four times as "
-            "much makes edges half as long."),
+            "much makes edges half as long. Painted here: by the brush of the tool bar."),
        Group::budget,
        GenerateOption::Choice{
-           {"even", "colors", "file"},
-           {text("Even"), text("Painted red"), text("A file says")},
+           {"even", "colors", "file", "painted"},
+           {text("Even"), text("Colors of its file"), text("A file says"), text("Painted here")},
            [](const GenerateSettings& s) { return static_cast<int>(s.density); },
            [](GenerateSettings& s, int i) { s.density = static_cast<DensitySource>(i); }},
        is_improved},

@@ -18,8 +18,9 @@ namespace cagewright::app {
 /// Where the cage is to be finer than elsewhere.
 enum class DensitySource {
   even,
-  colors, ///< where the model's vertex colors are red, and coarser where blue
-  file,   ///< as the numbers of a file say
+  colors,  ///< where the model's vertex colors are red, and coarser where blue
+  file,    ///< as the numbers of a file say
+  painted, ///< as it was painted in the window
 };
 
 struct GenerateSettings {

@@ -2,12 +2,16 @@
 /// What the viewport shows.
 #pragma once
 
+#include "app/edit/surface_look.h"
+
 namespace cagewright::app {
 
 struct Layers {
   bool model = true;
   bool smooth_normals = true; ///< else each face is flat
   bool wireframe = false;     ///< the model's edges
+  SurfaceLook look = SurfaceLook::studio;
+  bool occlusion = true; ///< shade in corners, while nothing moves
   bool cage_edges = true;
   bool cage_faces = true;
   bool cage_vertices = true;

@@ -6,7 +6,10 @@
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
 
+#include <algorithm>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace cagewright::app {
 namespace {
@@ -15,30 +18,49 @@ namespace {
 constexpr std::size_t drawn_at_once = 60000;
 constexpr std::size_t large = 150000;
 
-} // namespace
-
-Result<std::shared_ptr<const Model>> open_model(const std::filesystem::path& path,
-                                                const Progress& progress) {
-  progress(0, "reading");
-  Result<ModelFile> file = ModelFile::open(path);
-  if (!file) {
-    return file.error();
+/// All meshes as one; colors only if one of them has any, white for the others. Groups go.
+PolygonMesh joined(std::vector<ModelPart>& parts) {
+  if (parts.size() == 1) {
+    return std::exchange(parts.front().mesh, {});
   }
-  Result<FileNormals> normals = file->normals();
-  if (!normals) {
-    return normals.error();
+  PolygonMesh all;
+  const bool colored =
+      std::ranges::any_of(parts, [](const ModelPart& p) { return !p.mesh.colors.empty(); });
+  std::vector<Index> corners;
+  for (ModelPart& part : parts) {
+    part.first = static_cast<Index>(all.positions.size());
+    all.positions.insert(all.positions.end(), part.mesh.positions.begin(),
+                         part.mesh.positions.end());
+    if (colored) {
+      all.colors.insert(all.colors.end(), part.mesh.colors.begin(), part.mesh.colors.end());
+      all.colors.resize(all.positions.size(), {1, 1, 1, 1});
+    }
+    for (std::size_t f = 0; f < part.mesh.face_count(); ++f) {
+      const std::span<const Index> face = part.mesh.face(f);
+      corners.assign(face.begin(), face.end());
+      for (Index& v : corners) {
+        v += part.first;
+      }
+      all.add_face(corners);
+    }
   }
-  ModelOrigin origin{path, *std::move(normals), {file->notes().begin(), file->notes().end()}};
-  return prepare_model(std::move(*file).take_mesh(), std::move(origin), progress.part(0.5, 1));
+  return all;
 }
 
-Result<std::shared_ptr<const Model>> prepare_model(PolygonMesh mesh, ModelOrigin origin,
-                                                   const Progress& progress) {
+ModelPart part_of(PolygonMesh mesh, ModelOrigin origin) {
+  const auto count = static_cast<Index>(mesh.positions.size());
+  return {std::move(origin), std::move(mesh), 0, count};
+}
+
+Result<std::shared_ptr<const Model>> prepared(std::vector<ModelPart> parts,
+                                              const Progress& progress) {
   auto model = std::make_shared<Model>();
-  model->mesh = std::move(mesh);
-  model->path = std::move(origin.path);
-  model->file_normals = std::move(origin.normals);
-  model->notes = std::move(origin.notes);
+  model->mesh = joined(parts);
+  model->path = parts.front().origin.path;
+  for (const ModelPart& part : parts) {
+    model->notes.insert(model->notes.end(), part.origin.notes.begin(), part.origin.notes.end());
+  }
+  model->parts = std::move(parts);
   model->box = bounding_box(model->mesh.positions);
   model->diagonal = diagonal(model->mesh.positions);
   if (!(model->diagonal > 0)) {
@@ -63,6 +85,42 @@ Result<std::shared_ptr<const Model>> prepare_model(PolygonMesh mesh, ModelOrigin
   }
   progress(1, "done");
   return std::shared_ptr<const Model>(std::move(model));
+}
+
+} // namespace
+
+Result<std::shared_ptr<const Model>> open_model(const std::filesystem::path& path,
+                                                const Progress& progress) {
+  return open_models({path}, progress);
+}
+
+Result<std::shared_ptr<const Model>> open_models(const std::vector<std::filesystem::path>& paths,
+                                                 const Progress& progress) {
+  progress(0, "reading");
+  std::vector<ModelPart> parts;
+  for (const std::filesystem::path& path : paths) {
+    Result<ModelFile> file = ModelFile::open(path);
+    if (!file) {
+      return file.error();
+    }
+    Result<FileNormals> normals = file->normals();
+    if (!normals) {
+      return normals.error();
+    }
+    if (progress.cancelled()) {
+      return Error::cancelled();
+    }
+    ModelOrigin origin{path, *std::move(normals), {file->notes().begin(), file->notes().end()}};
+    parts.push_back(part_of(std::move(*file).take_mesh(), std::move(origin)));
+  }
+  return prepared(std::move(parts), progress.part(0.5, 1));
+}
+
+Result<std::shared_ptr<const Model>> prepare_model(PolygonMesh mesh, ModelOrigin origin,
+                                                   const Progress& progress) {
+  std::vector<ModelPart> parts;
+  parts.push_back(part_of(std::move(mesh), std::move(origin)));
+  return prepared(std::move(parts), progress);
 }
 
 } // namespace cagewright::app

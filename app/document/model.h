@@ -22,8 +22,17 @@ struct ModelOrigin {
   std::vector<FileNote> notes; ///< what its reader has taken otherwise than it stands there
 };
 
+/// One of the files that a model is made of.
+struct ModelPart {
+  ModelOrigin origin;
+  PolygonMesh mesh; ///< as it was read; empty where it is the whole model
+  Index first = 0;  ///< its first vertex in the model
+  Index count = 0;  ///< V of it
+};
+
 struct Model {
-  PolygonMesh mesh;
+  PolygonMesh mesh;                ///< all parts, one after the other
+  std::vector<ModelPart> parts;    ///< at least one
   std::vector<Triangle> triangles; ///< T: the faces, cut
   std::vector<Triangle> coarse;    ///< fewer, of the same vertices, to draw while a large model
                                    ///< moves: see coarse_triangles(); none for small models
@@ -31,11 +40,13 @@ struct Model {
   TriangleBvh bvh;                 ///< over the triangles
   Box3 box;                        ///< of all vertices
   double diagonal = 1;             ///< of that box; the unit of all tolerances
-  std::filesystem::path path;      ///< of the file; empty for a mesh in memory
-  FileNormals file_normals;        ///< as stored in the file, if any
-  std::vector<FileNote> notes;     ///< what its reader has taken otherwise than it stands there
+  std::filesystem::path path;      ///< of the first part; empty for a mesh in memory
+  std::vector<FileNote> notes;     ///< of all parts
   std::uint64_t checksum = 0;      ///< of the positions
 
+  [[nodiscard]] const PolygonMesh& mesh_of(const ModelPart& part) const {
+    return parts.size() == 1 ? mesh : part.mesh;
+  }
   [[nodiscard]] TriangleView view() const { return {mesh.positions, triangles}; }
 };
 
@@ -43,6 +54,11 @@ struct Model {
 /// Errors: those of read_mesh(); unfit_model (no extent); cancelled.
 Result<std::shared_ptr<const Model>> open_model(const std::filesystem::path& path,
                                                 const Progress& progress = {});
+
+/// Several files as one model: a skin, its clothes, its eyes, under one cage. Vertices are those of
+/// the first file, then of the second, and so on. Errors: the same.
+Result<std::shared_ptr<const Model>> open_models(const std::vector<std::filesystem::path>& paths,
+                                                 const Progress& progress = {});
 
 /// The same of a mesh in memory.
 Result<std::shared_ptr<const Model>> prepare_model(PolygonMesh mesh, ModelOrigin origin,

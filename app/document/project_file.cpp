@@ -57,6 +57,8 @@ template <class Visit> void visit(Layers& l, const Visit& field) {
   field("model", l.model, no_range);
   field("smooth_normals", l.smooth_normals, no_range);
   field("wireframe", l.wireframe, no_range);
+  field("look", l.look, Range{0, static_cast<double>(SurfaceLook::stripes)});
+  field("occlusion", l.occlusion, no_range);
   field("cage_edges", l.cage_edges, no_range);
   field("cage_faces", l.cage_faces, no_range);
   field("cage_vertices", l.cage_vertices, no_range);
@@ -73,7 +75,9 @@ template <class Visit> void visit(Layers& l, const Visit& field) {
 }
 
 template <class Visit> void visit(ToolSettings& t, const Visit& field) {
-  field("tool", t.tool, Range{0, static_cast<double>(Tool::scale)});
+  field("tool", t.tool, Range{0, static_cast<double>(Tool::paint)});
+  field("brush_radius", t.brush_radius, Range{1, 2000});
+  field("brush_strength", t.brush_strength, Range{0.01, 1});
   field("axes", t.axes, Range{0, static_cast<double>(AxesKind::view)});
   field("pivot", t.pivot, Range{0, static_cast<double>(Pivot::individual)});
   field("see_through", t.see_through, no_range);
@@ -230,13 +234,51 @@ Result<SharedPositions> read_pose(const QJsonValue& json, const State& state,
   return std::make_shared<const std::vector<Vec3>>(*std::move(positions));
 }
 
+/// How much of a pose there may be.
+std::optional<std::string> share_fault(const QJsonValue& json) {
+  return json.isUndefined() ? std::nullopt
+                            : fault_of(json, "the share of a pose", {-1e6, 1e6}, false);
+}
+
+/// In steps of 1/100, which is finer than one can see, packed.
+QString density_to_text(const std::vector<float>& density) {
+  QByteArray steps;
+  for (const float d : density) {
+    steps.append(static_cast<char>(std::lround(100 * std::clamp(d, -1.0F, 1.0F))));
+  }
+  return QString::fromLatin1(qCompress(steps).toBase64());
+}
+
+SharedDensity density_from_text(const QString& text) {
+  const QByteArray packed = QByteArray::fromBase64(text.toLatin1());
+  // (The first four bytes say how large it gets: what is no such thing must not be believed.)
+  constexpr qsizetype most_vertices = 200'000'000;
+  if (packed.size() < 5 || static_cast<quint8>(packed[0]) > (most_vertices >> 24)) {
+    return nullptr;
+  }
+  const QByteArray steps = qUncompress(packed);
+  if (steps.isEmpty()) {
+    return nullptr;
+  }
+  std::vector<float> density;
+  density.reserve(static_cast<std::size_t>(steps.size()));
+  for (const char step : steps) {
+    density.push_back(
+        std::clamp(static_cast<float>(static_cast<signed char>(step)) / 100, -1.0F, 1.0F));
+  }
+  return std::make_shared<const std::vector<float>>(std::move(density));
+}
+
 Status read_poses(const QJsonObject& json, const fs::path& path, State& state) {
   for (const QJsonValue& entry : json["poses"].toArray()) {
     const Result<SharedPositions> positions = read_pose(entry["positions"], state, path);
     if (!positions) {
       return positions.error();
     }
-    state.poses.push_back({entry["name"].toString(), *positions});
+    if (const auto fault = share_fault(entry["share"])) {
+      return malformed(path, *fault);
+    }
+    state.poses.push_back({entry["name"].toString(), *positions, entry["share"].toDouble(0)});
   }
   const QJsonObject line = json["time_line"].toObject();
   TimeLine& time_line = state.time_line;
@@ -277,17 +319,47 @@ Status read_poses(const QJsonObject& json, const fs::path& path, State& state) {
       return malformed(path, "the keyframes are not in order");
     }
     last_frame = frame;
-    state.time_line.keys.push_back({frame, *positions});
+    std::vector<double> of_poses;
+    for (const QJsonValue& share : entry["shares"].toArray()) {
+      if (const auto fault = share_fault(share)) {
+        return malformed(path, *fault);
+      }
+      of_poses.push_back(share.toDouble());
+    }
+    state.time_line.keys.push_back({frame, *positions, of_poses});
   }
   return success();
 }
 
-QJsonObject model_to_json(const Project& project, const fs::path& path) {
+QJsonObject place_to_json(const fs::path& file, const fs::path& project) {
   std::error_code error;
-  const fs::path relative = fs::relative(project.model_path, path.parent_path(), error);
-  return {{"path", QString::fromStdString(project.model_path.string())},
-          {"relative_path", error ? QString() : QString::fromStdString(relative.string())},
-          {"checksum", QString::number(project.model_checksum, 16)}};
+  const fs::path relative = fs::relative(file, project.parent_path(), error);
+  return {{"path", QString::fromStdString(file.string())},
+          {"relative_path", error ? QString() : QString::fromStdString(relative.string())}};
+}
+
+/// Where the file is now: beside the project as before, if it is there, or else where it was.
+fs::path place_from(const QJsonObject& json, const fs::path& project) {
+  const fs::path beside =
+      (project.parent_path() / json["relative_path"].toString().toStdString()).lexically_normal();
+  std::error_code error;
+  if (!json["relative_path"].toString().isEmpty() && fs::exists(beside, error)) {
+    return fs::absolute(beside, error);
+  }
+  return json["path"].toString().toStdString();
+}
+
+QJsonObject model_to_json(const Project& project, const fs::path& path) {
+  QJsonObject json = place_to_json(project.model_path, path);
+  json["checksum"] = QString::number(project.model_checksum, 16);
+  QJsonArray more;
+  for (const fs::path& part : project.more_models) {
+    more.append(place_to_json(part, path));
+  }
+  if (!more.isEmpty()) {
+    json["more"] = more;
+  }
+  return json;
 }
 
 } // namespace
@@ -305,17 +377,26 @@ Status write_project(const Project& project, const fs::path& path) {
     json["bound"] = project.bound;
     QJsonArray poses;
     for (const Pose& pose : state.poses) {
-      poses.append(QJsonObject{{"name", pose.name}, {"positions", to_json(*pose.positions)}});
+      poses.append(QJsonObject{
+          {"name", pose.name}, {"positions", to_json(*pose.positions)}, {"share", pose.share}});
     }
     json["poses"] = poses;
     QJsonArray keys;
     for (const Keyframe& key : state.time_line.keys) {
-      keys.append(QJsonObject{{"frame", key.frame}, {"positions", to_json(*key.positions)}});
+      QJsonArray shares;
+      for (const double share : key.shares) {
+        shares.append(share);
+      }
+      keys.append(QJsonObject{
+          {"frame", key.frame}, {"positions", to_json(*key.positions)}, {"shares", shares}});
     }
     json["time_line"] = QJsonObject{{"first", state.time_line.first},
                                     {"last", state.time_line.last},
                                     {"frames_per_second", state.time_line.frames_per_second},
                                     {"keys", keys}};
+  }
+  if (state.density) {
+    json["density"] = density_to_text(*state.density);
   }
   if (!project.saved_as.empty()) {
     json["saved_as"] = QString::fromStdString(project.saved_as.string());
@@ -351,13 +432,10 @@ Result<Project> read_project(const fs::path& path) {
   }
   Project project;
   if (const QJsonObject model = json["model"].toObject(); !model.isEmpty()) {
-    project.model_path = model["path"].toString().toStdString();
+    project.model_path = place_from(model, path);
     project.model_checksum = model["checksum"].toString().toULongLong(nullptr, 16);
-    const fs::path beside =
-        (path.parent_path() / model["relative_path"].toString().toStdString()).lexically_normal();
-    std::error_code error;
-    if (!model["relative_path"].toString().isEmpty() && fs::exists(beside, error)) {
-      project.model_path = fs::absolute(beside, error);
+    for (const QJsonValue& part : model["more"].toArray()) {
+      project.more_models.push_back(place_from(part.toObject(), path));
     }
   }
   if (json["cage"].isObject()) {
@@ -374,6 +452,7 @@ Result<Project> read_project(const fs::path& path) {
     }
     project.bound = json["bound"].toBool();
   }
+  project.state.density = density_from_text(json["density"].toString());
   project.settings = generate_settings_from_json(json["generate"].toObject());
   const QJsonObject view = json["view"].toObject();
   project.camera = camera_from(view["camera"].toObject(), project.notes);

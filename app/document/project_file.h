@@ -18,10 +18,11 @@
 namespace cagewright::app {
 
 struct Project {
-  std::filesystem::path model_path; ///< absolute; empty: no model
-  std::uint64_t model_checksum = 0; ///< of its positions
-  State state;                      ///< without binding and stages
-  bool bound = false;               ///< the model is to be bound again
+  std::filesystem::path model_path;               ///< absolute; empty: no model
+  std::uint64_t model_checksum = 0;               ///< of its positions
+  std::vector<std::filesystem::path> more_models; ///< parts of it besides, absolute
+  State state;                                    ///< without binding and stages
+  bool bound = false;                             ///< the model is to be bound again
   GenerateSettings settings;
   Layers layers;
   ToolSettings tools;

@@ -28,13 +28,28 @@ using SharedPositions = std::shared_ptr<const std::vector<Vec3>>;
 struct Pose {
   QString name;
   SharedPositions positions; ///< C
+  /// How much of it, as what it moves from the rest, is in the cage as it is edited; what the mixer
+  /// shows. The cage may have been moved besides.
+  double share = 0;
 };
 
 /// A state of the cage at a time.
 struct Keyframe {
   int frame = 0;
-  SharedPositions positions; ///< C
+  SharedPositions positions;       ///< C
+  std::vector<double> shares = {}; ///< of the poses; those that came later have none
 };
+
+/// A point of the model by which it is dragged, or held.
+struct Pin {
+  Index triangle = 0;                                 ///< of Model::triangles
+  Vec3 shares = Vec3::Zero();                         ///< barycentric: of its corners
+  std::shared_ptr<const std::vector<double>> weights; ///< C
+};
+
+/// One number for each vertex of the model: where the cage is to be finer (to 1) or coarser
+/// (to -1).
+using SharedDensity = std::shared_ptr<const std::vector<float>>;
 
 struct TimeLine {
   static constexpr int least_frame = -9999;
@@ -54,8 +69,11 @@ struct State {
   SharedPositions cage;
   std::shared_ptr<const Binding> binding; ///< null in refine mode
   Selection selection;
+  std::vector<Index> hidden_faces; ///< of the cage, ascending: see app/edit/hidden.h
   std::vector<Pose> poses;
   TimeLine time_line;
+  std::vector<Pin> pins;                          ///< in deform mode
+  SharedDensity density;                          ///< null: none was painted
   std::shared_ptr<const BoxDecomposition> stages; ///< null: none were made
 };
 

@@ -11,32 +11,37 @@ auto at_or_after(std::vector<Keyframe>& keys, int frame) {
                           [](const Keyframe& key, int f) { return key.frame < f; });
 }
 
-/// Speed at keyframe k, per frame: that of the parabola through it and its neighbors; 0 at the
-/// ends, so that movements start and stop softly.
-Vec3 speed(const std::vector<Keyframe>& keys, std::size_t k, std::size_t vertex) {
+/// Adds `times` the speed at keyframe k, per frame: that of the parabola through it and its
+/// neighbors; 0 at the ends, so that movements start and stop softly.
+void add_speed(const std::vector<Keyframe>& keys, std::size_t k, double times,
+               std::vector<double>& shares) {
   if (k == 0 || k + 1 == keys.size()) {
-    return Vec3::Zero();
+    return;
   }
-  const auto position = [&](std::size_t i) -> const Vec3& { return (*keys[i].positions)[vertex]; };
   const double before = keys[k].frame - keys[k - 1].frame;
   const double after = keys[k + 1].frame - keys[k].frame;
-  const Vec3 in = (position(k) - position(k - 1)) / before;
-  const Vec3 out = (position(k + 1) - position(k)) / after;
-  return (after * in + before * out) / (before + after);
+  const double in = times * after / (before + after) / before;
+  const double out = times * before / (before + after) / after;
+  shares[k - 1] -= in;
+  shares[k] += in - out;
+  shares[k + 1] += out;
 }
 
 } // namespace
 
-std::vector<Vec3> cage_at(const TimeLine& time_line, double frame) {
+std::vector<double> key_shares(const TimeLine& time_line, double frame) {
   const std::vector<Keyframe>& keys = time_line.keys;
+  std::vector<double> shares(keys.size(), 0.0);
   if (keys.empty()) {
-    return {};
+    return shares;
   }
   if (frame <= keys.front().frame) {
-    return *keys.front().positions;
+    shares.front() = 1;
+    return shares;
   }
   if (frame >= keys.back().frame) {
-    return *keys.back().positions;
+    shares.back() = 1;
+    return shares;
   }
   std::size_t k = 0;
   while (frame >= keys[k + 1].frame) {
@@ -48,13 +53,39 @@ std::vector<Vec3> cage_at(const TimeLine& time_line, double frame) {
   const double h01 = t * t * (3 - 2 * t);
   const double h10 = t * (1 - t) * (1 - t);
   const double h11 = t * t * (t - 1);
-  std::vector<Vec3> positions = *keys[k].positions;
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    const Vec3& from = positions[v];
-    const Vec3& to = (*keys[k + 1].positions)[v];
-    const Vec3 moved = from + h01 * (to - from) + h10 * length * speed(keys, k, v) +
-                       h11 * length * speed(keys, k + 1, v);
-    positions[v] = moved;
+  shares[k] += 1 - h01;
+  shares[k + 1] += h01;
+  add_speed(keys, k, h10 * length, shares);
+  add_speed(keys, k + 1, h11 * length, shares);
+  return shares;
+}
+
+std::vector<double> pose_shares_at(const TimeLine& time_line, double frame, std::size_t poses) {
+  const std::vector<double> of_keys = key_shares(time_line, frame);
+  std::vector<double> shares(poses, 0.0);
+  for (std::size_t k = 0; k < of_keys.size(); ++k) {
+    const std::vector<double>& of_poses = time_line.keys[k].shares;
+    for (std::size_t p = 0; p < std::min(poses, of_poses.size()); ++p) {
+      shares[p] += of_keys[k] * of_poses[p];
+    }
+  }
+  return shares;
+}
+
+std::vector<Vec3> cage_at(const TimeLine& time_line, double frame) {
+  const std::vector<Keyframe>& keys = time_line.keys;
+  const std::vector<double> shares = key_shares(time_line, frame);
+  std::vector<Vec3> positions;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (shares[k] == 1) { // to the last digit
+      return *keys[k].positions;
+    }
+  }
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    positions.resize(keys[k].positions->size(), Vec3::Zero());
+    for (std::size_t v = 0; shares[k] != 0 && v < positions.size(); ++v) {
+      positions[v] += shares[k] * (*keys[k].positions)[v];
+    }
   }
   return positions;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cagewright::app {
 namespace {
@@ -60,11 +61,17 @@ double nearest_fraction(const Pixel& p, const Pixel& a, const Pixel& b) {
   return length2 > 0 ? std::clamp((p - a).dot(b - a) / length2, 0.0, 1.0) : 0;
 }
 
-Picker::Picker(const PolygonMesh& cage, const CageGraph& graph)
-    : positions_(cage.positions), graph_(&graph) {
-  Triangulation cut = triangulate(cage);
-  face_of_ = std::move(cut.face_of);
-  bvh_ = TriangleBvh({positions_, cut.triangles});
+Picker::Picker(const PolygonMesh& cage, const CageGraph& graph, InSight sight)
+    : positions_(cage.positions), graph_(&graph), sight_(std::move(sight)) {
+  const Triangulation cut = triangulate(cage);
+  std::vector<Triangle> triangles;
+  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
+    if (sight_.face(cut.face_of[t])) {
+      triangles.push_back(cut.triangles[t]);
+      face_of_.push_back(cut.face_of[t]);
+    }
+  }
+  bvh_ = TriangleBvh({positions_, triangles});
   diagonal_ = diagonal(positions_);
 }
 
@@ -146,14 +153,14 @@ std::optional<Pick> Picker::pick(const OrbitCamera& camera, const Pixel& cursor,
   const std::vector<std::optional<Projected>> at = project_all(camera);
   if (mode == SelectionMode::vertex) {
     for (Index v = 0; v < at.size(); ++v) {
-      if (at[v] && !graph_->vertex_faces(v).empty()) {
+      if (at[v] && !graph_->vertex_faces(v).empty() && sight_.vertex(v)) {
         offer(v, positions_[v], at[v]->pixel, at[v]->depth);
       }
     }
   } else {
     for (Index e = 0; e < graph_->edge_count(); ++e) {
       const auto [a, b] = graph_->edge(e);
-      if (!at[a] || !at[b]) {
+      if (!at[a] || !at[b] || !sight_.edge(e)) {
         continue;
       }
       const double t = nearest_fraction(cursor, at[a]->pixel, at[b]->pixel);
@@ -191,15 +198,17 @@ Selection Picker::within(const OrbitCamera& camera, std::span<const Pixel> outli
   switch (mode) {
   case SelectionMode::vertex:
     for (Index v = 0; v < at.size(); ++v) {
-      if (at[v] && !graph_->vertex_faces(v).empty() && contains(outline, at[v]->pixel) &&
-          seen(positions_[v])) {
+      if (at[v] && !graph_->vertex_faces(v).empty() && sight_.vertex(v) &&
+          contains(outline, at[v]->pixel) && seen(positions_[v])) {
         result.vertices.push_back(v);
       }
     }
     break;
   case SelectionMode::edge:
-    for (const EdgeVertices& e : graph_->edges()) {
-      if (at[e[0]] && at[e[1]] && reaches_into(outline, at[e[0]]->pixel, at[e[1]]->pixel) &&
+    for (Index number = 0; number < graph_->edge_count(); ++number) {
+      const EdgeVertices& e = graph_->edge(number);
+      if (at[e[0]] && at[e[1]] && sight_.edge(number) &&
+          reaches_into(outline, at[e[0]]->pixel, at[e[1]]->pixel) &&
           seen((positions_[e[0]] + positions_[e[1]]) / 2)) {
         result.edges.push_back(e);
       }
@@ -209,7 +218,7 @@ Selection Picker::within(const OrbitCamera& camera, std::span<const Pixel> outli
     for (Index f = 0; f < graph_->face_count(); ++f) {
       const Vec3 center = center_of(f);
       const std::optional<Projected> middle = camera.project(center);
-      if (middle && contains(outline, middle->pixel) &&
+      if (middle && sight_.face(f) && contains(outline, middle->pixel) &&
           (options.see_through || shows_face(camera, f))) {
         result.faces.push_back(f);
       }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/edit/cage_graph.h"
+#include "app/edit/hidden.h"
 #include "app/edit/orbit_camera.h"
 #include "app/edit/selection.h"
 #include "spatial/bvh.h"
@@ -34,7 +35,8 @@ struct Pick {
 class Picker {
 public:
   Picker() = default;
-  Picker(const PolygonMesh& cage, const CageGraph& graph);
+  /// \param sight  what is out of sight is neither found nor before anything
+  Picker(const PolygonMesh& cage, const CageGraph& graph, InSight sight = {});
 
   /// The nearest element of the mode, if one is near enough. Of elements within a pixel or so of
   /// each other the one in front.
@@ -59,6 +61,7 @@ private:
 
   std::vector<Vec3> positions_;
   const CageGraph* graph_ = nullptr;
+  InSight sight_;
   std::vector<Index> face_of_; // of each triangle
   TriangleBvh bvh_;
   double diagonal_ = 1;

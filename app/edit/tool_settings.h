@@ -4,7 +4,15 @@
 
 namespace cagewright::app {
 
-enum class Tool { select_box, select_lasso, translate, rotate, scale };
+enum class Tool {
+  select_box,
+  select_lasso,
+  translate,
+  rotate,
+  scale,
+  pull,  ///< drags the model; the cage follows
+  paint, ///< where the cage is to be finer
+};
 enum class AxesKind { world, local, view };
 enum class Falloff { smooth, linear, sharp };
 
@@ -30,6 +38,8 @@ struct ToolSettings {
   bool connected_only = false;  ///< distances along the cage's edges, not through the air
   bool symmetric = false;       ///< the mirror image follows
   int symmetry_axis = 0;        ///< normal of the mirror plane: 0 x, 1 y, 2 z
+  double brush_radius = 40;     ///< of painting, logical pixels
+  double brush_strength = 0.25; ///< how much a stroke adds where it passes
   bool stop_at_contact = false; ///< refining: a drag goes no further than the cage stays valid
   friend bool operator==(const ToolSettings&, const ToolSettings&) = default;
 };

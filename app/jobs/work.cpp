@@ -1,6 +1,7 @@
 #include "app/jobs/work.h"
 
 #include "app/document/binding.h"
+#include "app/document/time_line.h"
 #include "cage/box_cage.h"
 #include <cagewright/cage/density.h>
 #include <cagewright/cage/generate.h>
@@ -10,6 +11,7 @@
 #include <cagewright/io/model_file.h>
 #include <cagewright/io/read_mesh.h>
 #include <cagewright/io/read_vertex_weights.h>
+#include <cagewright/io/write_animation.h>
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/mesh/weld.h>
@@ -24,15 +26,31 @@
 namespace cagewright::app {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr double most_weight_bytes = 1.5e9;
 
 /// One weight for each vertex of the model; none: even.
-Result<std::vector<double>> density_of(const Model& model, const GenerateSettings& settings) {
+Result<std::vector<double>> density_of(const Model& model, const GenerateSettings& settings,
+                                       const SharedDensity& painted) {
   switch (settings.density) {
   case DensitySource::even:
     break;
   case DensitySource::colors:
     return painted_density(model.mesh.colors);
+  case DensitySource::painted: {
+    if (!painted || painted->size() != model.mesh.positions.size() ||
+        std::ranges::all_of(*painted, [](float d) { return d == 0; })) {
+      return Error{ErrorCode::invalid_option,
+                   "paint where the cage is to be finer (the brush in the tool bar), or let it be "
+                   "even"};
+    }
+    // As colors do: see painted_density().
+    std::vector<double> weights(painted->size());
+    std::ranges::transform(*painted, weights.begin(),
+                           [](float d) { return std::pow(16.0, static_cast<double>(d)); });
+    return weights;
+  }
   case DensitySource::file: {
     if (settings.density_file.isEmpty()) {
       return Error{ErrorCode::invalid_option,
@@ -65,14 +83,68 @@ QString remark_of(const GeneratedCage& made, const GenerateOptions& options) {
   return remarks.join("; ");
 }
 
+/// What belongs to a part of the model, of a value for each vertex.
+std::span<const Vec3> slice(const std::vector<Vec3>& values, const ModelPart& part) {
+  return std::span(values).subspan(part.first, part.count);
+}
+
+/// A model in memory has no file whose attributes could be kept.
+Result<std::vector<FileNote>> write_shape(PolygonMesh mesh, std::span<const Vec3> positions,
+                                          const fs::path& out) {
+  mesh.positions.assign(positions.begin(), positions.end());
+  const Status written = write_mesh(mesh, out);
+  return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
+}
+
+/// Writes one part in all poses. \returns notes about what the first cannot hold
+Result<std::vector<FileNote>> write_part(const Model& model, std::size_t number,
+                                         const std::vector<std::vector<Vec3>>& poses,
+                                         const std::vector<ModelOutput>& outputs,
+                                         const Progress& progress) {
+  const ModelPart& part = model.parts[number];
+  const PolygonMesh& mesh = model.mesh_of(part);
+  std::optional<ModelFile> file;
+  if (!part.origin.path.empty()) {
+    Result<ModelFile> opened = ModelFile::open(part.origin.path);
+    if (!opened) {
+      return opened.error();
+    }
+    file = *std::move(opened);
+  }
+  NormalField normals;
+  if (const FileNormals& stored = part.origin.normals; !stored.normals.empty()) {
+    normals = NormalField(mesh, {stored.of_corner, stored.normals.size(), stored.normals});
+  }
+  std::vector<FileNote> notes;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (progress.cancelled()) {
+      return Error::cancelled();
+    }
+    progress(static_cast<double>(i) / static_cast<double>(outputs.size()), "writing");
+    const std::span<const Vec3> positions = slice(poses[i], part);
+    normals.update(positions);
+    const fs::path out = path_of_part(model, number, outputs[i].path);
+    Result<std::vector<FileNote>> written =
+        file ? file->write_moved(positions, normals.normals(), out)
+             : write_shape(mesh, positions, out);
+    if (!written) {
+      return written.error();
+    }
+    if (i == 0) { // the others lose the same
+      notes = *std::move(written);
+    }
+  }
+  return notes;
+}
+
 } // namespace
 
 Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
-                           const Progress& progress) {
+                           const SharedDensity& painted, const Progress& progress) {
   GenerateOptions options = settings.options;
   Result<std::vector<double>> density = std::vector<double>();
   if (options.method != Method::boxes) {
-    density = density_of(model, settings);
+    density = density_of(model, settings, painted);
   }
   if (!density) {
     return density.error();
@@ -160,18 +232,18 @@ Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
   return judged;
 }
 
-namespace {
-
-/// A model in memory has no file whose attributes could be kept.
-Result<std::vector<FileNote>> write_shape(const Model& model, std::span<const Vec3> positions,
-                                          const std::filesystem::path& out) {
-  PolygonMesh moved = model.mesh;
-  moved.positions.assign(positions.begin(), positions.end());
-  const Status written = write_mesh(moved, out);
-  return written ? Result<std::vector<FileNote>>(std::vector<FileNote>()) : written.error();
+fs::path path_of_part(const Model& model, std::size_t part, const fs::path& path) {
+  if (model.parts.size() == 1) {
+    return path;
+  }
+  // Parts of one name are told apart by their number.
+  const auto stem_of = [](const ModelPart& p) { return p.origin.path.stem().string(); };
+  const std::string stem = stem_of(model.parts[part]);
+  const bool is_only = std::ranges::count(model.parts, stem, stem_of) == 1;
+  return path.parent_path() /
+         (path.stem().string() + "-" + stem + (is_only ? "" : "-" + std::to_string(part + 1)) +
+          path.extension().string());
 }
-
-} // namespace
 
 Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
                                             const std::vector<ModelOutput>& outputs,
@@ -189,36 +261,70 @@ Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMes
   if (!moved) {
     return moved.error();
   }
-  std::optional<ModelFile> file;
-  if (!model.path.empty()) {
-    Result<ModelFile> opened = ModelFile::open(model.path);
-    if (!opened) {
-      return opened.error();
-    }
-    file = *std::move(opened);
-  }
-  NormalField normals;
-  if (const FileNormals& stored = model.file_normals; !stored.normals.empty()) {
-    normals = NormalField(model.mesh, {stored.of_corner, stored.normals.size(), stored.normals});
-  }
   std::vector<FileNote> notes;
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    if (progress.cancelled()) {
-      return Error::cancelled();
-    }
-    progress(0.8 + 0.2 * static_cast<double>(i) / static_cast<double>(outputs.size()), "writing");
-    normals.update(moved->positions[i]);
+  for (std::size_t part = 0; part < model.parts.size(); ++part) {
+    const Progress share = progress.part(
+        0.8 + 0.2 * static_cast<double>(part) / static_cast<double>(model.parts.size()), 1);
     Result<std::vector<FileNote>> written =
-        file ? file->write_moved(moved->positions[i], normals.normals(), outputs[i].path)
-             : write_shape(model, moved->positions[i], outputs[i].path);
+        write_part(model, part, moved->positions, outputs, share);
     if (!written) {
       return written.error();
     }
-    if (i == 0) { // the others lose the same
-      notes = *std::move(written);
-    }
+    notes.insert(notes.end(), written->begin(), written->end());
   }
   return notes;
+}
+
+Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
+                        const TimeLine& time_line, const std::filesystem::path& path,
+                        const Progress& progress) {
+  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage_at_rest);
+  if (!solver) {
+    return solver.error();
+  }
+  std::vector<std::vector<Vec3>> keys;
+  for (const Keyframe& key : time_line.keys) {
+    keys.push_back(*key.positions);
+  }
+  Result<StreamedPoses> moved = deform_streaming(*solver, cage_at_rest.positions, keys,
+                                                 model.mesh.positions, progress.part(0, 0.6));
+  if (!moved) {
+    return moved.error();
+  }
+  std::vector<std::vector<double>> shares;
+  for (int frame = time_line.first; frame <= time_line.last; ++frame) {
+    shares.push_back(key_shares(time_line, frame));
+  }
+  for (std::size_t number = 0; number < model.parts.size(); ++number) {
+    const ModelPart& part = model.parts[number];
+    MovingMesh moving;
+    moving.rest = model.mesh_of(part);
+    const std::span<const Vec3> at_rest = slice(model.normals, part);
+    moving.rest_normals.assign(at_rest.begin(), at_rest.end());
+    NormalField normals(moving.rest, smooth_normals(moving.rest));
+    for (const std::vector<Vec3>& shape : moved->positions) {
+      const std::span<const Vec3> positions = slice(shape, part);
+      moving.shapes.emplace_back(positions.begin(), positions.end());
+      normals.update(positions);
+      moving.normals.emplace_back(normals.normals().begin(), normals.normals().end());
+    }
+    if (const Result<ModelFile> file = ModelFile::open(part.origin.path);
+        file) { // how it is dressed
+      if (Result<MeshAttributes> dress = file->attributes();
+          dress && file->mesh().positions.size() == moving.rest.positions.size()) {
+        moving.attributes = *std::move(dress);
+      }
+    }
+    moving.shares = shares;
+    moving.first_frame = time_line.first;
+    moving.frames_per_second = time_line.frames_per_second;
+    if (Status s =
+            write_animation(moving, path_of_part(model, number, path), progress.part(0.6, 1));
+        !s) {
+      return s;
+    }
+  }
+  return success();
 }
 
 Status export_weights(const Model& model, const PolygonMesh& cage,

@@ -24,10 +24,12 @@ struct MadeCage {
   QString remark; ///< what is not as asked for, and shares of quads; or empty
 };
 
-/// Makes a cage as the settings say. Errors: those of generate(), painted_density() and
-/// read_vertex_weights().
+/// Makes a cage as the settings say.
+/// \param painted  what was painted in the window, for DensitySource::painted
+/// Errors: those of generate(), painted_density() and read_vertex_weights(); invalid_option
+/// (nothing was painted).
 Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
-                           const Progress& progress = {});
+                           const SharedDensity& painted = nullptr, const Progress& progress = {});
 
 /// Splits the model into boxes only, to look at. Errors: those of decompose().
 Result<std::shared_ptr<const BoxDecomposition>>
@@ -57,15 +59,27 @@ struct ModelOutput {
   SharedPositions cage; ///< the pose
 };
 
-/// Writes the model in each of the poses. A file of the same format as the model's keeps all else
-/// that is in it, with its normals turned along; others get what they can hold. The model's file is
-/// read once more, for all poses.
-/// \returns notes about what the first of them cannot hold
-/// Errors: cannot_open (the model's file is gone), mismatch (it is another now), cannot_write,
-/// unsupported, invalid_cage, cancelled.
+/// Where a part of the model is written: `path` itself, or, where there are several parts, beside
+/// it with the part's name after its stem.
+std::filesystem::path path_of_part(const Model& model, std::size_t part,
+                                   const std::filesystem::path& path);
+
+/// Writes the model in each of the poses, each of its parts to a file of its own: see
+/// path_of_part(). A file of the same format as the part's keeps all else that is in it, with its
+/// normals turned along; others get what they can hold. The files are read once more, for all
+/// poses. \returns notes about what the first of them cannot hold Errors: cannot_open (a file of
+/// the model is gone), mismatch (it is another now), cannot_write, unsupported, invalid_cage,
+/// cancelled.
 Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress = {});
+
+/// Writes the model as it moves along the time line: see write_animation(). Keyframes are what is
+/// deformed, whatever the number of frames.
+/// Errors: those of write_animation(), invalid_cage.
+Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
+                        const TimeLine& time_line, const std::filesystem::path& path,
+                        const Progress& progress = {});
 
 /// Binds once more and writes the weights as NumPy's .npz. Errors: cannot_write, cancelled.
 Status export_weights(const Model& model, const PolygonMesh& cage,

@@ -3,7 +3,7 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QFileDialog>
-#include <QFormLayout>
+#include <QGridLayout>
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
@@ -56,55 +56,49 @@ QString big_button_style() {
 GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
     : QWidget(parent), session_(session) {
   auto* layout = new QVBoxLayout(this);
-  setMinimumWidth(270);
+  setMinimumWidth(210);
 
+  // One grid for all, so that fields stand below each other, whatever is shown.
   auto* content = new QWidget;
   auto* options = new QVBoxLayout(content);
   options->setContentsMargins(0, 0, 6, 0);
-  auto* basic = new QFormLayout;
-  options->addLayout(basic);
-
-  auto* toggle = new QToolButton;
-  toggle->setObjectName("advanced");
-  toggle->setText(tr("Advanced"));
-  toggle->setCheckable(true);
-  toggle->setArrowType(Qt::RightArrow);
-  toggle->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  toggle->setAutoRaise(true);
-  options->addWidget(toggle);
-  auto* advanced = new QWidget;
-  auto* advanced_layout = new QVBoxLayout(advanced);
-  advanced_layout->setContentsMargins(0, 0, 0, 0);
-  advanced->hide();
-  options->addWidget(advanced);
+  auto* grid = new QGridLayout;
+  grid->setColumnStretch(1, 1);
+  grid->setHorizontalSpacing(6);
+  grid->setVerticalSpacing(5);
+  options->addLayout(grid);
   options->addStretch();
-  connect(toggle, &QToolButton::toggled, this, [advanced, toggle](bool on) {
-    advanced->setVisible(on);
-    toggle->setArrowType(on ? Qt::DownArrow : Qt::RightArrow);
-  });
-
-  basic->setRowWrapPolicy(QFormLayout::WrapLongRows);
-  std::map<GenerateOption::Group, Group> groups = {
-      {GenerateOption::Group::basic, {nullptr, basic}}};
+  const auto add_group = [&](GenerateOption::Group group) {
+    for (const GenerateOption& option : generate_options()) {
+      if (option.group == group) {
+        add_option(option, grid);
+      }
+    }
+  };
+  add_group(GenerateOption::Group::basic);
+  advanced_ = new QToolButton;
+  advanced_->setObjectName("advanced");
+  advanced_->setText(tr("Advanced"));
+  advanced_->setCheckable(true);
+  advanced_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  advanced_->setAutoRaise(true);
+  grid->addWidget(advanced_, grid->rowCount(), 0, 1, 3);
+  connect(advanced_, &QToolButton::toggled, this, &GeneratePanel::update_options);
   const std::pair<GenerateOption::Group, QString> titles[] = {
       {GenerateOption::Group::budget, tr("How close, and where finer")},
       {GenerateOption::Group::envelope, tr("Envelope")},
       {GenerateOption::Group::boxes, tr("Boxes")}};
   for (const auto& [group, title] : titles) {
-    auto* form = new QFormLayout;
-    form->setRowWrapPolicy(QFormLayout::WrapLongRows);
     auto* label = new QLabel("<b>" + title + "</b>");
-    advanced_layout->addWidget(label);
-    advanced_layout->addLayout(form);
-    groups[group] = {label, form};
+    label->setContentsMargins(0, 6, 0, 0);
+    grid->addWidget(label, grid->rowCount(), 0, 1, 3);
+    titles_[group] = label;
+    add_group(group);
   }
-  for (const GenerateOption& option : generate_options()) {
-    add_option(option, groups.at(option.group));
-  }
-  auto* defaults = new QPushButton(tr("Defaults"));
-  defaults->setToolTip(tr("Puts all options back"));
-  connect(defaults, &QPushButton::clicked, this, [this] { session_.set_settings({}); });
-  advanced_layout->addWidget(defaults);
+  defaults_ = new QPushButton(tr("Defaults"));
+  defaults_->setToolTip(tr("Puts all options back"));
+  connect(defaults_, &QPushButton::clicked, this, [this] { session_.set_settings({}); });
+  grid->addWidget(defaults_, grid->rowCount(), 1);
 
   auto* scroll = new QScrollArea;
   scroll->setWidget(content);
@@ -220,7 +214,7 @@ GeneratePanel::Field GeneratePanel::field_of(const GenerateOption::File& file) {
           }};
 }
 
-void GeneratePanel::add_option(const GenerateOption& option, const Group& group) {
+void GeneratePanel::add_option(const GenerateOption& option, QGridLayout* grid) {
   Field field = std::visit([this](const auto& kind) { return field_of(kind); }, option.kind);
   field.editor->setObjectName(option.key);
   field.editor->setToolTip(option.help);
@@ -228,28 +222,49 @@ void GeneratePanel::add_option(const GenerateOption& option, const Group& group)
   field.editor->setAccessibleDescription(option.help);
   field.editor->setFocusPolicy(Qt::StrongFocus);
   field.editor->installEventFilter(new IgnoreWheel(field.editor));
+  // Narrow panels have narrow fields, not cut ones.
+  field.editor->setMinimumWidth(60);
+  field.editor->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  auto* label = new QLabel(option.label);
+  label->setToolTip(option.help);
+  label->setBuddy(field.editor);
+  auto* ask = new QToolButton;
+  ask->setObjectName("help_" + option.key);
+  ask->setText("?");
+  ask->setAutoRaise(true);
+  ask->setCheckable(true);
+  ask->setToolTip(option.help);
+  ask->setAccessibleName(tr("Help on %1").arg(option.label));
   QLabel* help = explanation(option.help);
-  group.form->addRow(option.label, field.editor);
-  group.form->addRow(help);
-  rows_.push_back({&option, group, {field.editor, help}, std::move(field.show_value)});
+  const int row = grid->rowCount();
+  grid->addWidget(label, row, 0);
+  grid->addWidget(field.editor, row, 1);
+  grid->addWidget(ask, row, 2);
+  grid->addWidget(help, row + 1, 0, 1, 3);
+  connect(ask, &QToolButton::toggled, this, &GeneratePanel::update_options);
+  rows_.push_back({&option, {label, field.editor, ask}, help, std::move(field.show_value)});
 }
 
 void GeneratePanel::update_options() {
-  std::set<QLabel*> shown;
+  const bool advanced = advanced_->isChecked();
+  advanced_->setArrowType(advanced ? Qt::DownArrow : Qt::RightArrow);
+  defaults_->setVisible(advanced);
+  std::set<GenerateOption::Group> shown;
   for (const Row& row : rows_) {
     row.show_value();
-    const bool applies = row.option->applies(session_.settings());
+    const GenerateOption::Group group = row.option->group;
+    const bool visible = row.option->applies(session_.settings()) &&
+                         (advanced || group == GenerateOption::Group::basic);
     for (QWidget* field : row.fields) {
-      row.group.form->setRowVisible(field, applies);
+      field->setVisible(visible);
     }
-    if (applies) {
-      shown.insert(row.group.title);
+    row.explanation->setVisible(visible && qobject_cast<QToolButton*>(row.fields[2])->isChecked());
+    if (visible) {
+      shown.insert(group);
     }
   }
-  for (const Row& row : rows_) {
-    if (row.group.title != nullptr) {
-      row.group.title->setVisible(shown.contains(row.group.title));
-    }
+  for (const auto& [group, title] : titles_) {
+    title->setVisible(shown.contains(group));
   }
 }
 

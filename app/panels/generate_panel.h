@@ -8,12 +8,14 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <vector>
 
 class QCheckBox;
-class QFormLayout;
+class QGridLayout;
 class QLabel;
 class QPushButton;
+class QToolButton;
 
 namespace cagewright::app {
 
@@ -28,17 +30,13 @@ Q_SIGNALS:
   void loadCageRequested();
 
 private:
-  struct Group {
-    QLabel* title = nullptr; ///< null: none
-    QFormLayout* form = nullptr;
-  };
   /// A field to edit an option, and what shows the option's value in it.
   struct Field {
     QWidget* editor;
     std::function<void()> show_value;
   };
 
-  void add_option(const GenerateOption& option, const Group& group);
+  void add_option(const GenerateOption& option, QGridLayout* grid);
   Field field_of(const GenerateOption::Integer& integer);
   Field field_of(const GenerateOption::Number& number);
   Field field_of(const GenerateOption::Choice& choice);
@@ -49,13 +47,16 @@ private:
 
   struct Row {
     const GenerateOption* option;
-    Group group;
-    std::array<QWidget*, 2> fields; ///< to edit it, and to explain it: a line each
+    std::array<QWidget*, 3> fields; ///< its name, to edit it, and to explain it
+    QLabel* explanation;            ///< a line of its own, while it is asked for
     std::function<void()> show_value;
   };
 
   Session& session_;
   std::vector<Row> rows_;
+  std::map<GenerateOption::Group, QLabel*> titles_;
+  QToolButton* advanced_ = nullptr;
+  QPushButton* defaults_ = nullptr;
   QPushButton* generate_ = nullptr;
   QPushButton* load_ = nullptr;
   QPushButton* bind_ = nullptr;

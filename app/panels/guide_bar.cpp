@@ -1,5 +1,7 @@
 #include "app/panels/guide_bar.h"
 
+#include "app/icons.h"
+
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -22,7 +24,7 @@ GuideBar::GuideBar(Session& session, QWidget* parent) : QFrame(parent), session_
   button_->setObjectName("guide_button");
   layout->addWidget(button_);
   auto* close = new QToolButton;
-  close->setText("x");
+  close->setIcon(icon("close"));
   close->setAutoRaise(true);
   close->setToolTip(tr("Hides these hints. Help > First Steps brings them back"));
   layout->addWidget(close);

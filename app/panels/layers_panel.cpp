@@ -1,6 +1,7 @@
 #include "app/panels/layers_panel.h"
 
 #include <QCheckBox>
+#include <QComboBox>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QSignalBlocker>
@@ -33,6 +34,8 @@ const std::vector<Group>& groups() {
         {"smooth_normals", "Smooth", "Smooth shading; otherwise each face is flat",
          &Layers::smooth_normals},
         {"wireframe", "Wireframe", "The edges of the model", &Layers::wireframe},
+        {"occlusion", "Shade in corners",
+         "Corners and folds are darker. Drawn as soon as nothing moves", &Layers::occlusion},
         {"weights", "Weights of the selection",
          "Colors: how much each point of the model follows the selected cage vertices. Needs a "
          "bound model",
@@ -108,6 +111,9 @@ LayersPanel::LayersPanel(Session& session, QWidget* parent) : QWidget(parent), s
         ensure_stages();
       });
     }
+    if (std::string_view(group.title) == "Model") {
+      add_looks(layout);
+    }
     layout->addSpacing(6);
   }
   layout->addStretch();
@@ -115,6 +121,24 @@ LayersPanel::LayersPanel(Session& session, QWidget* parent) : QWidget(parent), s
   connect(&session.document(), &Document::stagesChanged, this, &LayersPanel::update_depth);
   update_switches();
   update_depth();
+}
+
+void LayersPanel::add_looks(QVBoxLayout* layout) {
+  auto* row = new QHBoxLayout;
+  row->addWidget(new QLabel(tr("Looks like")));
+  look_ = new QComboBox;
+  look_->setObjectName("look");
+  // In the order of SurfaceLook.
+  look_->addItems({tr("Plain"), tr("Clay"), tr("Wax"), tr("Metal"), tr("Stripes")});
+  look_->setToolTip(tr("What the model is made of, as it were. Metal and stripes show bumps and "
+                       "kinks that a deformation makes"));
+  row->addWidget(look_, 1);
+  layout->addLayout(row);
+  connect(look_, &QComboBox::currentIndexChanged, this, [this](int at) {
+    Layers layers = session_.document().layers();
+    layers.look = static_cast<SurfaceLook>(at);
+    session_.document().set_layers(layers);
+  });
 }
 
 void LayersPanel::step_depth(int by) {
@@ -141,6 +165,8 @@ void LayersPanel::update_switches() {
     const QSignalBlocker blocker(s.box);
     s.box->setChecked(layers.*s.value);
   }
+  const QSignalBlocker blocker(look_);
+  look_->setCurrentIndex(static_cast<int>(layers.look));
   update_depth();
 }
 

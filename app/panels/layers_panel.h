@@ -9,8 +9,10 @@
 #include <vector>
 
 class QCheckBox;
+class QComboBox;
 class QLabel;
 class QSlider;
+class QVBoxLayout;
 
 namespace cagewright::app {
 
@@ -29,12 +31,14 @@ private:
     bool Layers::*value;
   };
 
+  void add_looks(QVBoxLayout* layout);
   void update_switches();
   void update_depth();
   void ensure_stages();
 
   Session& session_;
   std::vector<Switch> switches_;
+  QComboBox* look_ = nullptr;
   QSlider* depth_ = nullptr;
   QLabel* depth_text_ = nullptr;
 };

@@ -1,5 +1,6 @@
 #include "app/panels/poses_panel.h"
 
+#include <QDoubleSpinBox>
 #include <QGridLayout>
 #include <QLabel>
 #include <QListWidget>
@@ -15,6 +16,9 @@ namespace cagewright::app {
 namespace {
 
 constexpr int blend_steps = 200;
+// Of a slider of the mixer, from nothing to all of a pose. Numbers go farther.
+constexpr int share_steps = 100;
+constexpr double most_share = 5;
 
 } // namespace
 
@@ -49,6 +53,9 @@ PosesPanel::PosesPanel(Editor& editor, QWidget* parent)
   grid->addWidget(compare_, 2, 1);
   layout->addLayout(grid);
 
+  mixer_ = new QWidget;
+  mixer_->setObjectName("mixer");
+  layout->addWidget(mixer_);
   layout->addWidget(new QLabel(tr("From rest to pose")));
   blend_ = new QSlider(Qt::Horizontal);
   blend_->setObjectName("blend");
@@ -95,6 +102,8 @@ PosesPanel::PosesPanel(Editor& editor, QWidget* parent)
   connect(&document_, &Document::posesChanged, this, &PosesPanel::update_list);
   connect(&document_, &Document::modeChanged, this, &PosesPanel::update_buttons);
   connect(&document_, &Document::viewStateChanged, this, &PosesPanel::update_blend);
+  connect(&document_, &Document::viewStateChanged, this, &PosesPanel::update_mixer);
+  connect(&document_, &Document::timeLineChanged, this, &PosesPanel::update_mixer);
   update_list();
 }
 
@@ -114,7 +123,7 @@ void PosesPanel::add_pose() {
 }
 
 void PosesPanel::update_list() {
-  const QSignalBlocker blocker(list_);
+  const QSignalBlocker blocker(list_); // (while a slider is dragged only the mixer changes)
   const int row = list_->currentRow();
   list_->clear();
   for (const Pose& pose : document_.state().poses) {
@@ -123,6 +132,69 @@ void PosesPanel::update_list() {
   }
   list_->setCurrentRow(std::min(row, list_->count() - 1));
   update_buttons();
+  update_mixer();
+}
+
+/// A slider and a number for each pose.
+void PosesPanel::make_mixer() {
+  shares_.clear();
+  qDeleteAll(mixer_->findChildren<QWidget*>(QString(), Qt::FindDirectChildrenOnly));
+  delete mixer_->layout();
+  auto* grid = new QGridLayout(mixer_);
+  grid->setContentsMargins(0, 4, 0, 4);
+  grid->setColumnStretch(1, 1);
+  if (!mixed_.empty()) {
+    auto* title = new QLabel(tr("Mix of poses"));
+    title->setToolTip(tr("How much of each pose is in the cage; what the poses move is added. A "
+                         "keyframe (K) keeps the mix"));
+    grid->addWidget(title, 0, 0, 1, 3);
+  }
+  for (std::size_t p = 0; p < mixed_.size(); ++p) {
+    const int row = static_cast<int>(p) + 1;
+    auto* name = new QLabel(mixed_[p]);
+    name->setMaximumWidth(90);
+    name->setToolTip(mixed_[p]);
+    auto* slider = new QSlider(Qt::Horizontal);
+    slider->setObjectName(QString("share_%1").arg(p));
+    slider->setAccessibleName(mixed_[p]);
+    slider->setRange(0, share_steps);
+    slider->setFocusPolicy(Qt::TabFocus);
+    auto* number = new QDoubleSpinBox;
+    number->setObjectName(QString("share_number_%1").arg(p));
+    number->setRange(-most_share, most_share);
+    number->setSingleStep(0.05);
+    number->setKeyboardTracking(false);
+    grid->addWidget(name, row, 0);
+    grid->addWidget(slider, row, 1);
+    grid->addWidget(number, row, 2);
+    connect(slider, &QSlider::sliderPressed, this, [this] { editor_.begin_mix(); });
+    connect(slider, &QSlider::sliderReleased, this, [this] { editor_.end_mix(); });
+    connect(slider, &QSlider::valueChanged, this, [this, p](int value) {
+      editor_.mix_pose(p, static_cast<double>(value) / share_steps);
+    });
+    connect(number, &QDoubleSpinBox::valueChanged, this,
+            [this, p](double value) { editor_.mix_pose(p, value); });
+    shares_.push_back({slider, number});
+  }
+}
+
+void PosesPanel::update_mixer() {
+  std::vector<QString> names;
+  for (const Pose& pose : document_.state().poses) {
+    names.push_back(pose.name);
+  }
+  if (names != mixed_ || mixer_->layout() == nullptr) {
+    mixed_ = std::move(names);
+    make_mixer();
+  }
+  const std::vector<double> shares = document_.shown_pose_shares();
+  for (std::size_t p = 0; p < shares_.size(); ++p) {
+    const QSignalBlocker blockers[] = {QSignalBlocker(shares_[p].slider),
+                                       QSignalBlocker(shares_[p].number)};
+    shares_[p].slider->setValue(static_cast<int>(std::lround(share_steps * shares[p])));
+    shares_[p].number->setValue(shares[p]);
+  }
+  mixer_->setEnabled(document_.mode() == Mode::deform);
 }
 
 void PosesPanel::update_buttons() {
@@ -132,6 +204,9 @@ void PosesPanel::update_buttons() {
   }
   for (QWidget* widget : {update_, apply_, remove_}) {
     widget->setEnabled(deforming && list_->currentRow() >= 0);
+  }
+  if (mixer_ != nullptr) {
+    mixer_->setEnabled(deforming);
   }
 }
 

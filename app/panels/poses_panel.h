@@ -7,6 +7,7 @@
 #include <QWidget>
 
 class QListWidget;
+class QDoubleSpinBox;
 class QPushButton;
 class QSlider;
 
@@ -25,6 +26,8 @@ private:
   void update_list();
   void update_buttons();
   void update_blend();
+  void make_mixer();
+  void update_mixer();
 
   Editor& editor_;
   Document& document_;
@@ -36,6 +39,13 @@ private:
   QPushButton* reset_ = nullptr;
   QPushButton* compare_ = nullptr;
   QSlider* blend_ = nullptr;
+  struct Share {
+    QSlider* slider;
+    QDoubleSpinBox* number;
+  };
+  QWidget* mixer_ = nullptr;
+  std::vector<QString> mixed_; // the names that the mixer was made for
+  std::vector<Share> shares_;
 };
 
 } // namespace cagewright::app

@@ -1,5 +1,7 @@
 #include "app/panels/time_line_panel.h"
 
+#include "app/icons.h"
+
 #include <QDoubleSpinBox>
 #include <QHBoxLayout>
 #include <QKeyEvent>
@@ -131,6 +133,7 @@ TimeLinePanel::TimeLinePanel(Editor& editor, QWidget* parent)
     auto* made = new QToolButton;
     made->setObjectName(name);
     made->setText(text);
+    made->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     made->setToolTip(help);
     row->addWidget(made);
     return made;
@@ -140,6 +143,8 @@ TimeLinePanel::TimeLinePanel(Editor& editor, QWidget* parent)
                 tr("The cage as it is becomes a keyframe at this frame (K)"));
   remove_ =
       button("remove_keyframe", tr("Remove Keyframe"), tr("Removes the keyframe at this frame"));
+  set_->setIcon(icon("keyframe"));
+  remove_->setIcon(icon("keyframe_remove"));
   row->addStretch();
   const auto number = [row](auto* box, const char* name, const QString& label,
                             const QString& help) {
@@ -194,6 +199,7 @@ void TimeLinePanel::update_line() {
     timer_.stop();
   }
   play_->setText(timer_.isActive() ? tr("Pause") : tr("Play"));
+  play_->setIcon(icon(timer_.isActive() ? "pause" : "play"));
   for (QWidget* widget :
        std::initializer_list<QWidget*>{ruler_, set_, frame_, first_, last_, rate_}) {
     widget->setEnabled(deforming);

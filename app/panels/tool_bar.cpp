@@ -1,5 +1,7 @@
 #include "app/panels/tool_bar.h"
 
+#include "app/icons.h"
+
 #include <QActionGroup>
 #include <QDoubleSpinBox>
 #include <QMenu>
@@ -18,13 +20,19 @@ struct Named {
   const char* help;
 };
 
-constexpr std::array<Named, 5> tool_names = {
+constexpr std::array<Named, 7> tool_names = {
     Named{"tool_box", "Box",
           "Drag a box round what to select (B). Shift adds, Shift+Ctrl takes away"},
     Named{"tool_lasso", "Lasso", "Draw round what to select. With any tool: hold Ctrl"},
     Named{"tool_move", "Move", "Drag the arrows to move the selection. G moves it at once"},
     Named{"tool_rotate", "Rotate", "Drag the rings to turn the selection. R turns it at once"},
-    Named{"tool_scale", "Scale", "Drag the handles to scale the selection. S scales it at once"}};
+    Named{"tool_scale", "Scale", "Drag the handles to scale the selection. S scales it at once"},
+    Named{"tool_pull", "Drag Model",
+          "Drag the bound model itself: the cage is bent to suit. A click leaves a pin that holds "
+          "it; Ctrl+click takes the pin away"},
+    Named{"tool_paint", "Paint Density",
+          "Paint on the model where the next cage is to be finer. Ctrl: coarser, Shift: erase, "
+          "Ctrl+wheel: size of the brush"}};
 
 struct Switch {
   Named named;
@@ -115,7 +123,9 @@ StepOf step_of(Tool tool) {
 
 void tell(QAction* action, const Named& named) {
   action->setObjectName(named.name);
-  action->setToolTip(ToolBar::tr(named.help));
+  action->setIcon(icon(named.name));
+  action->setToolTip(
+      QString("<b>%1</b><br>%2").arg(ToolBar::tr(named.text), ToolBar::tr(named.help)));
   action->setStatusTip(ToolBar::tr(named.help));
   action->setCheckable(true);
 }
@@ -125,6 +135,8 @@ void tell(QAction* action, const Named& named) {
 ToolBar::ToolBar(Document& document, QWidget* parent)
     : QToolBar(tr("Tools"), parent), document_(document) {
   setObjectName("tools");
+  setIconSize(QSize(20, 20));
+  setToolButtonStyle(Qt::ToolButtonIconOnly);
   add_tools();
   addSeparator();
   add_choice(choose_axes);
@@ -187,7 +199,10 @@ void ToolBar::add_choice(std::size_t number) {
             [this, &text, i] { change([&](ToolSettings& t) { text.set(t, i); }); });
   }
   choice.button->setObjectName(text.named.name);
-  choice.button->setToolTip(tr(text.named.help));
+  choice.button->setIcon(icon(text.named.name));
+  choice.button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  choice.button->setToolTip(
+      QString("<b>%1</b><br>%2").arg(tr(text.named.text), tr(text.named.help)));
   choice.button->setAccessibleName(tr(text.named.text));
   choice.button->setPopupMode(QToolButton::InstantPopup);
   choice.button->setMenu(choice.menu);

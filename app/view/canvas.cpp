@@ -1,6 +1,7 @@
 #include "app/view/canvas.h"
 
 #include "app/view/canvas_shaders.h"
+#include "app/view/fine_picture.h"
 #include "app/view/kept_picture.h"
 #include "app/view/mark_painter.h"
 #include "app/view/model_painter.h"
@@ -15,8 +16,13 @@
 namespace cagewright::app {
 namespace {
 
-// Smaller models are drawn anew for every frame.
-constexpr std::size_t worth_keeping = 100000;
+// The time that pictures of smaller models take is of no interest.
+constexpr std::size_t large_model = 100000;
+// A picture that takes longer is not made finer: the window would not answer meanwhile. Seconds.
+constexpr double slow_sample = 0.06;
+// Shade in corners: how dark, and from how far, in radii of the scene.
+constexpr double shade_strength = 1.5;
+constexpr double shade_radius = 0.14;
 
 /// From logical pixels to clip coordinates.
 Eigen::Matrix4d pixel_matrix(const CanvasView& view) {
@@ -52,9 +58,9 @@ std::vector<FaceMark> sorted_by_depth(const std::vector<FaceMark>& faces, const 
 bool same_picture(const CanvasView& a, const CanvasView& b) {
   return a.clip == b.clip && a.axes == b.axes && a.width == b.width && a.height == b.height &&
          a.model == b.model && a.smooth == b.smooth && a.wireframe == b.wireframe &&
-         a.coarse == b.coarse && a.background_top == b.background_top &&
-         a.background_bottom == b.background_bottom && a.model_color == b.model_color &&
-         a.wire_color == b.wire_color;
+         a.look == b.look && a.occlusion == b.occlusion && a.coarse == b.coarse &&
+         a.background_top == b.background_top && a.background_bottom == b.background_bottom &&
+         a.model_color == b.model_color && a.wire_color == b.wire_color;
 }
 
 } // namespace
@@ -81,6 +87,9 @@ struct Canvas::Gl {
   KeptPicture kept;
   std::optional<CanvasView> kept_view; // of which it is the picture
   bool can_keep = true;
+  FinePicture fine; // of kept_view
+  bool can_refine = true;
+  double sample_seconds = 0;
 };
 
 Canvas::Canvas(std::unique_ptr<Gl> gl) : gl_(std::move(gl)) {}
@@ -100,7 +109,12 @@ Result<std::unique_ptr<Canvas>> Canvas::create() {
   if (!marks) {
     return marks.error();
   }
+  Result<FinePicture> fine = FinePicture::create();
+  if (!fine) {
+    return fine.error();
+  }
   auto gl = std::make_unique<Gl>();
+  gl->fine = std::move(*fine);
   gl->background = std::move(*background);
   gl->model = std::move(*model);
   gl->marks = std::move(*marks);
@@ -177,7 +191,7 @@ void Canvas::draw_model(const CanvasView& view) {
 /// Draws the model, or copies its last picture.
 void Canvas::draw_or_copy_model(const CanvasView& view) {
   Gl& gl = *gl_;
-  if (!gl.can_keep || !view.keep || gl.model.triangle_count() < worth_keeping) {
+  if (!gl.can_keep || !view.keep) {
     draw_model(view);
     return;
   }
@@ -196,14 +210,47 @@ void Canvas::draw_or_copy_model(const CanvasView& view) {
     glFinish(); // to know how long it takes
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
     if (!view.coarse && view.model) {
-      model_seconds_ = time.count();
+      model_seconds_ = gl.model.triangle_count() < large_model ? 0 : time.count();
     }
+    gl.sample_seconds = time.count();
     gl.kept_view = view;
+    gl.fine.restart();
+  } else if (view.refine && can_refine(view.patient)) {
+    refine(view);
   }
   if (!gl.kept.copy_to(framebuffer)) {
     gl.can_keep = false;
     draw_model(view);
+  } else if (gl.fine.samples() >= FinePicture::least_samples && !gl.fine.copy_to(framebuffer)) {
+    gl.can_refine = false;
+    gl.fine.restart();
   }
+}
+
+bool Canvas::can_refine(bool patient) const {
+  const Gl& gl = *gl_;
+  return gl.can_keep && gl.can_refine && gl.kept_view && !gl.kept_view->coarse &&
+         (patient || gl.sample_seconds < slow_sample) &&
+         gl.fine.samples() < FinePicture::most_samples;
+}
+
+void Canvas::refine(const CanvasView& view) {
+  Gl& gl = *gl_;
+  const auto start = std::chrono::steady_clock::now();
+  CanvasView shifted = view;
+  const Eigen::Vector2d shift = gl.fine.shift();
+  shifted.clip.row(0) += 2 * shift.x() / view.width * view.clip.row(3);
+  shifted.clip.row(1) += 2 * shift.y() / view.height * view.clip.row(3);
+  if (!gl.fine.begin_sample(view.width, view.height)) {
+    gl.can_refine = false;
+    return;
+  }
+  draw_model(shifted);
+  gl.fine.add_sample(shifted.clip, view.axes, view.occlusion && view.model ? shade_strength : 0,
+                     shade_radius);
+  glFinish();
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  gl.sample_seconds = time.count();
 }
 
 MarkView Canvas::in_space(const CanvasView& view) const {

@@ -3,6 +3,7 @@
 /// nor the document. Needs a current context in every function, and where it is destroyed.
 #pragma once
 
+#include "app/edit/surface_look.h"
 #include <cagewright/core/geometry.h>
 #include <cagewright/core/result.h>
 #include <cagewright/mesh/triangle_mesh.h>
@@ -63,9 +64,13 @@ struct CanvasView {
   double pixel_ratio = 1; ///< device pixels in a logical one
   bool model = true;
   bool smooth = true;
+  SurfaceLook look = SurfaceLook::studio;
+  bool occlusion = false; ///< shade in corners, where the picture is refined
   bool wireframe = false;
   bool coarse = false; ///< the coarse triangles, if there are any, and no wireframe
   bool keep = false;   ///< the framebuffer has GL_DEPTH24_STENCIL8: the model's picture may be kept
+  bool refine = false; ///< nothing moves: make the kept picture finer, see can_refine()
+  bool patient = false;               ///< refine however long it takes
   double model_opacity_behind = 0.16; ///< of marks that the model hides
   Rgb background_top = {0.93F, 0.94F, 0.95F};
   Rgb background_bottom = {0.80F, 0.82F, 0.85F};
@@ -102,6 +107,11 @@ public:
   /// alone can change at little cost.
   void draw(const CanvasView& view, const Marks& marks, const Overlay& overlay);
 
+  /// Whether the picture that was drawn last would get finer, if it were drawn again with
+  /// `CanvasView::refine` and nothing else changed. Each time costs about one picture of the model.
+  /// \param patient  however long it takes
+  [[nodiscard]] bool can_refine(bool patient = false) const;
+
   /// How long the last picture of a large model took, with all triangles; 0 for others.
   [[nodiscard]] double model_seconds() const { return model_seconds_; }
 
@@ -110,6 +120,7 @@ private:
   explicit Canvas(std::unique_ptr<Gl> gl);
   void draw_model(const CanvasView& view);
   void draw_or_copy_model(const CanvasView& view);
+  void refine(const CanvasView& view);
   [[nodiscard]] MarkView in_space(const CanvasView& view) const;
 
   std::unique_ptr<Gl> gl_;

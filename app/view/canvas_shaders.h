@@ -37,6 +37,111 @@ vec3 lit(vec3 base, vec3 n) {
 }
 )";
 
+/// The looks of SurfaceLook. n towards the viewer; right, up, backward.
+inline constexpr const char* surfaces = R"(
+vec3 clay(vec3 n) {
+  float t = dot(n, normalize(vec3(-0.4, 0.62, 0.67)));
+  vec3 c = mix(vec3(0.20, 0.105, 0.085), vec3(0.60, 0.335, 0.25), smoothstep(-0.55, 0.35, t));
+  c = mix(c, vec3(0.90, 0.66, 0.53), smoothstep(0.2, 1.0, t));
+  float rim = pow(1.0 - max(n.z, 0.0), 3.0);
+  return c + 0.10 * rim * vec3(0.8, 0.85, 1.0);
+}
+vec3 wax(vec3 n) {
+  float t = dot(n, normalize(vec3(-0.45, 0.6, 0.66)));
+  vec3 c = mix(vec3(0.52, 0.33, 0.22), vec3(0.97, 0.90, 0.78), smoothstep(-0.8, 0.9, t));
+  c += 0.16 * pow(1.0 - max(n.z, 0.0), 2.0) * vec3(1.0, 0.62, 0.35); // what shines through
+  return c + 0.22 * pow(max(0.0, dot(n, normalize(vec3(-0.22, 0.36, 0.91)))), 60.0);
+}
+vec3 metal(vec3 n) {
+  vec3 r = vec3(2.0 * n.z * n.xy, 2.0 * n.z * n.z - 1.0); // where the view is mirrored to
+  float height = r.y + 0.18 * r.x;
+  vec3 sky = mix(vec3(0.60, 0.64, 0.70), vec3(0.97, 0.98, 1.0), smoothstep(0.05, 0.75, height));
+  vec3 ground = mix(vec3(0.13, 0.12, 0.12), vec3(0.42, 0.40, 0.38), smoothstep(-0.9, -0.05, height));
+  vec3 c = mix(ground, sky, smoothstep(-0.06, 0.06, height));
+  return c * mix(0.72, 1.0, n.z);
+}
+vec3 stripes(vec3 n) {
+  vec3 r = vec3(2.0 * n.z * n.xy, 2.0 * n.z * n.z - 1.0);
+  float t = 9.0 * acos(clamp(r.y, -1.0, 1.0)) / 3.14159265;
+  float soft = clamp(1.5 * fwidth(t), 0.02, 0.5);
+  float wave = abs(fract(t) - 0.5) * 2.0;
+  float ink = smoothstep(0.5 - soft, 0.5 + soft, wave);
+  return mix(vec3(0.10, 0.11, 0.13), vec3(0.94), ink) * (0.55 + 0.45 * n.z);
+}
+vec3 surface(int look, vec3 base, vec3 n) {
+  return look == 1 ? clay(n) : look == 2 ? wax(n) : look == 3 ? metal(n) : look == 4 ? stripes(n) : lit(base, n);
+}
+)";
+
+/// The mean of pictures: see FinePicture. Shade comes from what is before the tangent plane of a
+/// pixel's surface, near it, as Alchemy's ambient obscurance does (McGuire et al. 2011).
+inline constexpr const char* fine_vertex = R"(
+out vec2 uv;
+void main() {
+  uv = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2;
+  gl_Position = vec4(uv * 2 - 1, 0, 1);
+}
+)";
+
+inline constexpr const char* fine_fragment = R"(
+in vec2 uv;
+uniform sampler2D picture;
+uniform sampler2D depths;
+uniform float share;
+uniform mat4 clip;
+uniform mat4 unclip;
+uniform mat3 axes;
+uniform float strength;
+uniform float radius;
+uniform int number;
+uniform vec2 frame;
+out vec4 color;
+vec3 place(vec2 at, float depth) {
+  vec4 p = unclip * vec4(at * 2 - 1, depth * 2 - 1, 1);
+  return p.xyz / p.w;
+}
+vec3 place_at(vec2 at) { return place(at, textureLod(depths, at, 0).r); }
+// Of two neighbors the one that lies on the same surface.
+vec3 step_to(vec3 p, vec2 at, vec2 by) {
+  vec3 a = place_at(at + by) - p;
+  vec3 b = p - place_at(at - by);
+  return dot(a, a) < dot(b, b) ? a : b;
+}
+void main() {
+  vec3 seen = textureLod(picture, uv, 0).rgb;
+  color = vec4(seen, share);
+  float depth = textureLod(depths, uv, 0).r;
+  if (strength <= 0 || depth >= 0.999999) {
+    return;
+  }
+  vec3 p = place(uv, depth);
+  vec2 pixel = 1 / frame;
+  vec3 n = normalize(cross(step_to(p, uv, vec2(pixel.x, 0)), step_to(p, uv, vec2(0, pixel.y))));
+  if (dot(n, place(uv, 0) - p) < 0) {
+    n = -n;
+  }
+  // As wide as the radius is there.
+  vec4 beside = clip * vec4(p + radius * axes[0], 1);
+  vec4 here = clip * vec4(p, 1);
+  float reach = length((beside.xy / beside.w - here.xy / here.w) * frame / 2);
+  reach = clamp(reach, 3.0, 0.25 * frame.y);
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy + 5.588238 * float(number),
+                                             vec2(0.06711056, 0.00583715))));
+  const int count = 6;
+  float shade = 0;
+  for (int i = 0; i < count; ++i) {
+    float far = (float(i) + noise) / float(count);
+    float angle = 6.2831853 * (noise + 0.618034 * float(i) + 0.3819 * float(number));
+    vec3 q = place_at(uv + pixel * reach * far * vec2(cos(angle), sin(angle)));
+    vec3 v = q - p;
+    float d2 = dot(v, v);
+    float near = max(0.0, 1.0 - d2 / (radius * radius));
+    shade += near * max(0.0, dot(n, v) * inversesqrt(d2 + 1e-9) - 0.08);
+  }
+  color.rgb = seen * (1.0 - min(0.85, strength * shade / float(count)));
+}
+)";
+
 inline constexpr const char* model_vertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
@@ -60,6 +165,7 @@ in vec3 view_normal;
 in vec3 place;
 in vec3 base;
 uniform int smooth_normals;
+uniform int look;
 out vec4 color;
 void main() {
   vec3 flat_normal = normalize(cross(dFdx(place), dFdy(place)));
@@ -68,7 +174,7 @@ void main() {
   if (dot(n, flat_normal) < 0) { // the back of the surface
     n = -n;
   }
-  color = vec4(lit(base, n), 1);
+  color = vec4(surface(look, base, n), 1);
 }
 )";
 

@@ -22,8 +22,9 @@ std::uint32_t packed_normal(const Vec3& n) { // 10 bits each, signed
 
 Result<ModelPainter> ModelPainter::create() {
   ModelPainter painter;
-  Result<gl::Program> model = gl::make_program(shaders::model_vertex, std::string(shaders::light) +
-                                                                          shaders::model_fragment);
+  Result<gl::Program> model =
+      gl::make_program(shaders::model_vertex,
+                       std::string(shaders::light) + shaders::surfaces + shaders::model_fragment);
   if (!model) {
     return model.error();
   }
@@ -95,6 +96,8 @@ void ModelPainter::draw(const CanvasView& view) const {
   uniforms.set("axes", view.axes);
   uniforms.set("one_color", view.model_color, has_colors_ ? 0.0F : 1.0F);
   uniforms.set("smooth_normals", view.smooth ? 1 : 0);
+  // Colors that say something are seen as they are.
+  uniforms.set("look", static_cast<int>(has_colors_ ? SurfaceLook::studio : view.look));
   glBindVertexArray(coarse ? coarse_array_.id() : array_.id());
   glDrawElements(GL_TRIANGLES, coarse ? coarse_corners_ : corners_, GL_UNSIGNED_INT, nullptr);
 }

@@ -121,6 +121,12 @@ Color weight_color(float weight) {
   return color_of(weight_rgb(weight));
 }
 
+Color density_color(float density, const Rgb& model) {
+  static constexpr Rgb finer = {0.86F, 0.16F, 0.14F};
+  static constexpr Rgb coarser = {0.16F, 0.34F, 0.88F};
+  return color_of(mixed(model, density > 0 ? finer : coarser, std::min(1.0F, std::abs(density))));
+}
+
 Color distance_color(float distance) {
   constexpr float full = 0.08F;
   return color_of(scale_color(std::min(1.0F, distance / full)));
@@ -157,9 +163,13 @@ void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph
   const std::span<const float> distances = document.cage_distances();
   const bool by_distance = layers.distance && distances.size() == cage.positions.size();
 
+  const InSight sight(graph, document.state().hidden_faces);
   const Triangulation cut = triangulate(cage);
   for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
     const Index f = cut.face_of[t];
+    if (!sight.face(f)) {
+      continue;
+    }
     const bool is_hovered = hovers_face && hovered->element == f;
     const bool is_marked = bad[f] != 0 || selected_face[f] != 0 || is_hovered;
     if (!layers.cage_faces && !is_marked) {
@@ -207,7 +217,7 @@ void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph
         (selected_vertex[edge[0]] != 0 && selected_vertex[edge[1]] != 0) ||
         std::any_of(round.begin(), round.end(), [&](Index f) { return selected_face[f] != 0; });
     const bool is_hovered = hovers_edge && hovered->element == e;
-    if (!layers.cage_edges && !is_selected && !is_hovered && !is_bad) {
+    if (!sight.edge(e) || (!layers.cage_edges && !is_selected && !is_hovered && !is_bad)) {
       continue;
     }
     const Rgb rgb = is_hovered    ? colors.hovered
@@ -231,7 +241,8 @@ void add_cage(const Document& document, const PolygonMesh& cage, const CageGraph
     const bool is_hovered =
         hovered && hovered->mode == SelectionMode::vertex && hovered->element == v;
     const bool is_selected = selected_vertex[v] != 0;
-    if (graph.vertex_faces(v).empty() || (!layers.cage_vertices && !is_selected && !is_hovered)) {
+    if (graph.vertex_faces(v).empty() || !sight.vertex(v) ||
+        (!layers.cage_vertices && !is_selected && !is_hovered)) {
       continue;
     }
     const double strength = front_vertex[v] != 0 ? 1 : behind;

@@ -26,6 +26,9 @@ Color weight_color(float weight);
 Rgb weight_rgb(float weight);
 /// Weights from here to 1 have colours of their own; the scale goes through grey at 0.
 constexpr float least_weight = -0.5F;
+/// A color for a painted density: red where the cage is to be finer, blue where coarser, as in
+/// files; the model's own where neither.
+Color density_color(float density, const Rgb& model);
 /// A colour for a distance, a fraction of the diagonal: the same scale, full at 0.08.
 Color distance_color(float distance);
 

@@ -10,6 +10,7 @@
 #include <QSurfaceFormat>
 
 #include <cmath>
+#include <utility>
 
 namespace cagewright::app {
 namespace {
@@ -20,6 +21,10 @@ constexpr double slow_picture = 0.04;
 constexpr double around_a_place = 0.05;
 // So long after the last movement the picture is drawn with all triangles, in milliseconds.
 constexpr int rest_after = 250;
+// And so long after the last picture a finer one is made.
+constexpr int refine_after = 15;
+// Of a picture for a file.
+constexpr int samples_of_picture = 6;
 
 } // namespace
 
@@ -41,6 +46,12 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
   rest_.setSingleShot(true);
   rest_.setInterval(rest_after);
   connect(&rest_, &QTimer::timeout, this, repaint);
+  refine_.setSingleShot(true);
+  refine_.setInterval(refine_after);
+  connect(&refine_, &QTimer::timeout, this, [this] {
+    refines_ = true;
+    update();
+  });
   connect(&document_, &Document::modelChanged, this, &Viewport::model_changed);
   connect(&document_, &Document::modelMoved, this, [this] {
     dirty_.positions = true;
@@ -83,12 +94,24 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
     forget_hover();
     update();
   });
+  connect(&document_, &Document::hiddenChanged, this, [this] {
+    picker_.reset();
+    forget_hover();
+    end_loop_cut();
+    update();
+  });
   connect(&document_, &Document::checkChanged, this, repaint);
   connect(&document_, &Document::modeChanged, this, [this] {
     end_loop_cut();
     update();
   });
-  connect(&document_, &Document::toolsChanged, this, repaint);
+  connect(&document_, &Document::toolsChanged, this, [this] {
+    const bool paints = document_.tools().tool == Tool::paint;
+    dirty_.colors = dirty_.colors || paints != painted_before_;
+    painted_before_ = paints;
+    update();
+  });
+  connect(&document_, &Document::pinsChanged, this, repaint);
   connect(&document_, &Document::viewStateChanged, this, repaint);
   model_changed();
 }
@@ -217,6 +240,7 @@ void Viewport::set_camera_state(const QJsonObject& state) {
 
 void Viewport::set_dark(bool dark) {
   colors_ = dark ? ViewColors::dark() : ViewColors::light();
+  dirty_.colors = true;
   update();
 }
 
@@ -253,7 +277,8 @@ PolygonMesh Viewport::shown_cage() const {
 const Picker& Viewport::picker() {
   refresh_graph();
   if (!picker_) {
-    picker_.emplace(document_.has_cage() ? shown_cage() : PolygonMesh(), graph_);
+    picker_.emplace(document_.has_cage() ? shown_cage() : PolygonMesh(), graph_,
+                    InSight(graph_, document_.state().hidden_faces));
   }
   return *picker_;
 }
@@ -297,7 +322,13 @@ void Viewport::upload() {
   if (dirty_.colors) {
     const std::span<const float> weights = document_.model_weights();
     std::vector<Color> colors;
-    if (document_.layers().weights && weights.size() == document_.model_positions().size()) {
+    const SharedDensity& density = document_.state().density;
+    if (document_.tools().tool == Tool::paint && density &&
+        density->size() == document_.model_positions().size()) {
+      colors.resize(density->size());
+      parallel_for(0, colors.size(), 4096,
+                   [&](std::size_t i) { colors[i] = density_color((*density)[i], colors_.model); });
+    } else if (document_.layers().weights && weights.size() == document_.model_positions().size()) {
       colors.resize(weights.size());
       parallel_for(0, colors.size(), 4096,
                    [&](std::size_t i) { colors[i] = weight_color(weights[i]); });
@@ -327,11 +358,24 @@ CanvasView Viewport::canvas_view(int width, int height, double ratio) const {
   view.model = layers.model;
   view.smooth = layers.smooth_normals;
   view.wireframe = layers.wireframe;
+  view.look = layers.look;
+  view.occlusion = layers.occlusion;
   view.background_top = colors_.top;
   view.background_bottom = colors_.bottom;
   view.model_color = colors_.model;
   view.wire_color = colors_.wire;
   return view;
+}
+
+void Viewport::finish_picture() {
+  rest_.stop();
+  patient_ = true;
+  do {
+    refines_ = true;
+    grabFramebuffer();
+  } while (canvas_ && canvas_->can_refine(patient_));
+  patient_ = false;
+  update();
 }
 
 void Viewport::paintGL() {
@@ -347,7 +391,14 @@ void Viewport::paintGL() {
     CanvasView view = canvas_view(device(width()), device(height()), ratio);
     view.coarse = draws_coarsely();
     view.keep = true;
+    const bool still = !rest_.isActive() && !drag_.is_active() &&
+                       (gesture_ == Gesture::none || gesture_ == Gesture::press);
+    view.refine = std::exchange(refines_, false) && still;
+    view.patient = patient_;
     canvas_->draw(view, marks, make_overlay());
+    if (still && canvas_->can_refine() && !refine_.isActive()) {
+      refine_.start(); // once all else is done
+    }
   }
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
@@ -367,14 +418,18 @@ QImage Viewport::picture(const QSize& size) {
   }
   with_texts_ = false;
   upload();
-  // Twice as fine, then halved: smooth outlines without multisampling.
-  QOpenGLFramebufferObject target(size * 2, QOpenGLFramebufferObject::Depth);
+  QOpenGLFramebufferObject target(size, QOpenGLFramebufferObject::CombinedDepthStencil);
   target.bind();
   const Marks marks = make_marks();
-  canvas_->draw(canvas_view(2 * size.width(), 2 * size.height(), 2), marks, {});
+  CanvasView view = canvas_view(size.width(), size.height(), 1);
+  view.keep = view.patient = true;
+  canvas_->draw(view, marks, {});
+  view.refine = true;
+  for (int i = 0; i < samples_of_picture; ++i) {
+    canvas_->draw(view, marks, {});
+  }
   target.release();
-  const QImage image =
-      target.toImage().scaled(size, Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
+  const QImage image = target.toImage();
   with_texts_ = true;
   camera_ = before;
   doneCurrent();

@@ -4,12 +4,15 @@
 
 #include "app/commands/cage_actions.h"
 #include "app/commands/editor.h"
+#include "app/edit/cage_pull.h"
+#include "app/edit/density_brush.h"
 #include "app/edit/edit_cage.h"
 #include "app/edit/gizmo.h"
 #include "app/edit/orbit_camera.h"
 #include "app/edit/pick.h"
 #include "app/edit/transform_drag.h"
 #include "app/view/canvas.h"
+#include "app/view/key_map.h"
 #include "app/view/scene_marks.h"
 
 #include <QImage>
@@ -26,9 +29,10 @@ namespace cagewright::app {
 
 /// Draws the document and lets the mouse edit it.
 ///
-/// Middle button: orbit; with Shift: pan; wheel: zoom. Alt with the left button does the same as
-/// the middle one, for track pads. Left button: select by a click, a box or (Ctrl) a lasso; drag
-/// the gizmo, a vertex or an edge. Keys are those of Blender: see keyPressEvent().
+/// What the buttons do to the camera is the key map's: see key_map.h. Left button: select by a
+/// click, a box or (Ctrl) a lasso; drag the gizmo, a vertex or an edge. A click with the right one
+/// asks for a menu. Keys are those of Blender, but for what the key map changes: see
+/// keyPressEvent().
 class Viewport : public QOpenGLWidget {
   Q_OBJECT
 
@@ -57,6 +61,10 @@ public:
   [[nodiscard]] QImage picture(const QSize& size);
 
   void set_dark(bool dark);
+  void set_key_map(KeyMap map) { key_map_ = map; }
+  [[nodiscard]] KeyMap key_map() const { return key_map_; }
+  /// Whether the wheel zooms the other way.
+  void set_wheel_reversed(bool reversed) { wheel_reversed_ = reversed; }
   /// Whether large models are drawn with fewer triangles while they or the camera move, if drawing
   /// them takes long.
   void set_coarse_while_moving(bool on);
@@ -76,10 +84,17 @@ public:
   /// often. Then the loops slide, until another.
   void begin_loop_cut();
   [[nodiscard]] bool cutting_loops() const { return loop_cut_.has_value(); }
+  /// Makes the picture as fine as it gets, however long that takes.
+  void finish_picture();
+  /// Takes all pins of the model away, by which it is dragged.
+  void remove_pins();
+  /// Takes away what was painted.
+  void clear_density();
 
 Q_SIGNALS:
   void cameraChanged();
-  void hint(const QString& text); ///< what the mouse would do here: for the status bar
+  void menuRequested(const QPoint& at); ///< of what can be done there
+  void hint(const QString& text);       ///< what the mouse would do here: for the status bar
 
 protected:
   void initializeGL() override;
@@ -92,12 +107,13 @@ protected:
   void wheelEvent(QWheelEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
   void keyReleaseEvent(QKeyEvent* event) override;
+  void contextMenuEvent(QContextMenuEvent* event) override;
   void leaveEvent(QEvent* event) override;
   void focusOutEvent(QFocusEvent* event) override;
   bool event(QEvent* event) override;
 
 private:
-  enum class Gesture { none, orbit, pan, zoom, press, box, lasso, transform };
+  enum class Gesture { none, orbit, pan, zoom, press, box, lasso, transform, pull, paint };
   struct Press {
     Pixel at = Pixel::Zero();
     Qt::KeyboardModifiers modifiers;
@@ -110,6 +126,23 @@ private:
     bool slides = false;                      ///< the ring is chosen
     Pixel from = Pixel::Zero();               ///< where sliding began
     std::vector<std::pair<Vec3, Vec3>> lines; ///< to be drawn
+  };
+  struct Pull { ///< of the model by one of its pins
+    CagePull solver;
+    std::size_t pin = 0;
+    bool is_new = false;
+    bool moves = false;
+    Pixel pressed = Pixel::Zero();
+    Pixel offset = Pixel::Zero(); ///< from the pointer to the pin
+    Vec3 from = Vec3::Zero();
+    std::vector<Vec3> cage;    ///< where it began
+    std::vector<Vec3> targets; ///< of all pins
+  };
+  struct Stroke {
+    bool erases = false;
+    double sign = 1;
+    Pixel last = Pixel::Zero(); ///< where the last dab was
+    std::vector<float> density;
   };
   struct Dirty {
     bool model = true;
@@ -136,6 +169,7 @@ private:
   void model_changed();
 
   // The mouse
+  void begin_camera_move(CameraMove move);
   void click(const Press& press);
   void finish_outline(Qt::KeyboardModifiers modifiers);
   void forget_outline();
@@ -156,6 +190,19 @@ private:
   bool loop_cut_key(QKeyEvent* event);
   bool loop_cut_press(Qt::MouseButton button);
 
+  // Dragging the model
+  [[nodiscard]] std::optional<std::size_t> pin_at(const Pixel& cursor) const;
+  [[nodiscard]] std::optional<Pin> new_pin(const Pixel& cursor) const;
+  bool pull_press(const Qt::KeyboardModifiers& modifiers);
+  void pull_move();
+  void end_pull(bool keep);
+
+  // Painting
+  [[nodiscard]] std::optional<Dab> dab_at(const Pixel& cursor) const;
+  bool paint_press(const Qt::KeyboardModifiers& modifiers);
+  void add_dabs(bool first);
+  void end_stroke(bool keep);
+
   // Transformations
   [[nodiscard]] TransformKind tool_kind() const;
   [[nodiscard]] bool has_gizmo_tool() const;
@@ -164,6 +211,7 @@ private:
   bool drag_key(QKeyEvent* event);
   bool camera_key(QKeyEvent* event);
   bool edit_key(QKeyEvent* event);
+  bool maya_key(QKeyEvent* event);
   void update_caption();
 
   Editor& editor_;
@@ -176,16 +224,23 @@ private:
   QString failure_; // of OpenGL
   Dirty dirty_;
   Layers layers_before_; // what the last change of layers changed
+  bool painted_before_ = false;
   bool with_texts_ = true;
   bool coarse_while_moving_ = true;
-  QTimer rest_; // runs while something moves, and a moment longer
+  QTimer rest_;   // runs while something moves, and a moment longer
+  QTimer refine_; // until the picture is made finer
+  bool refines_ = false;
+  bool patient_ = false;
 
   CageGraph graph_;
   bool graph_is_stale_ = true;
   std::optional<Picker> picker_;
 
+  KeyMap key_map_ = KeyMap::blender;
+  bool wheel_reversed_ = false;
   Gesture gesture_ = Gesture::none;
-  bool box_armed_ = false; // by the key B
+  std::optional<Pixel> menu_press_; // of the right button, while it may become a click
+  bool box_armed_ = false;          // by the key B
   Press press_;
   Pixel cursor_ = Pixel::Zero();
   std::vector<Pixel> lasso_;
@@ -197,6 +252,8 @@ private:
   std::vector<Index> moving_; // the vertices handed to the editor
   QString step_title_;        // of a step that the drag is the end of, or empty
   std::optional<LoopCut> loop_cut_;
+  std::optional<Pull> pull_;
+  std::optional<Stroke> stroke_;
   QString caption_;
 };
 

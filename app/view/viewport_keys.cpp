@@ -14,7 +14,8 @@ bool Viewport::event(QEvent* event) {
     const bool keypad = key->modifiers().testFlag(Qt::KeypadModifier);
     const bool outlines = gesture_ == Gesture::box || gesture_ == Gesture::lasso;
     const bool ends = key->key() == Qt::Key_Escape || key->matches(QKeySequence::Undo);
-    if (drag_.is_active() || loop_cut_ || keypad || ((box_armed_ || outlines) && ends)) {
+    if (drag_.is_active() || loop_cut_ || keypad || ((pull_ || stroke_) && ends) ||
+        ((box_armed_ || outlines) && ends)) {
       event->accept();
       return true;
     }
@@ -168,7 +169,45 @@ void Viewport::forget_outline() {
   update();
 }
 
+/// Letters that are tools in Maya: menus and tool bar have them as shortcuts, too, but let them go
+/// on here while they cannot be used.
+bool Viewport::maya_key(QKeyEvent* event) {
+  if (key_map_ != KeyMap::maya || (event->modifiers() & ~Qt::ShiftModifier) != 0) {
+    return false;
+  }
+  const auto take = [this](Tool tool) {
+    ToolSettings tools = document_.tools();
+    tools.tool = tool;
+    document_.set_tools(tools);
+    return true;
+  };
+  switch (event->key()) {
+  case Qt::Key_Q:
+    return take(Tool::select_box);
+  case Qt::Key_W:
+    return take(Tool::translate);
+  case Qt::Key_E:
+    return take(Tool::rotate);
+  case Qt::Key_R:
+    return take(Tool::scale);
+  case Qt::Key_A:
+    frame_all();
+    return true;
+  case Qt::Key_S:
+    return true;
+  default:
+    return false;
+  }
+}
+
 bool Viewport::edit_key(QKeyEvent* event) {
+  if (pull_ || stroke_) {
+    if (event->key() == Qt::Key_Escape || event->matches(QKeySequence::Undo)) {
+      end_pull(false);
+      end_stroke(false);
+    }
+    return true; // other keys wait until it is over
+  }
   const bool control = event->modifiers().testFlag(Qt::ControlModifier);
   const bool alt = event->modifiers().testFlag(Qt::AltModifier);
   if (event->matches(QKeySequence::Undo) &&
@@ -236,6 +275,10 @@ bool Viewport::edit_key(QKeyEvent* event) {
   case Qt::Key_S:
     begin_transform(TransformKind::scale);
     return true;
+  case Qt::Key_H:
+    return does(alt ? CageAction::reveal : CageAction::hide);
+  case Qt::Key_Slash:
+    return does(CageAction::isolate);
   case Qt::Key_O: {
     ToolSettings tools = document_.tools();
     tools.proportional = !tools.proportional;
@@ -248,7 +291,8 @@ bool Viewport::edit_key(QKeyEvent* event) {
 }
 
 void Viewport::keyPressEvent(QKeyEvent* event) {
-  if (drag_key(event) || loop_cut_key(event) || camera_key(event) || edit_key(event)) {
+  if (drag_key(event) || loop_cut_key(event) || maya_key(event) || camera_key(event) ||
+      edit_key(event)) {
     event->accept();
     return;
   }

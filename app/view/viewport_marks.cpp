@@ -15,6 +15,17 @@ QColor qt(const Rgb& c, double alpha = 1) {
   return QColor::fromRgbF(c[0], c[1], c[2], static_cast<float>(alpha));
 }
 
+void add_circle(const Pixel& middle, double radius, const Color& color, Overlay& overlay) {
+  constexpr int parts = 96;
+  const auto at = [&](int k) {
+    const double angle = 2 * M_PI * k / parts;
+    return Vec3(middle.x() + radius * std::cos(angle), middle.y() + radius * std::sin(angle), 0);
+  };
+  for (int i = 0; i < parts; ++i) {
+    overlay.lines.push_back({at(i), at(i + 1), color, 1.3F});
+  }
+}
+
 } // namespace
 
 Marks Viewport::make_marks() {
@@ -39,6 +50,14 @@ Marks Viewport::make_marks() {
     if (loop_cut_) {
       for (const auto& [a, b] : loop_cut_->lines) {
         marks.lines.push_back({a, b, color_of(colors_.selected), 2.5F});
+      }
+    }
+    if (document_.tools().tool == Tool::pull) {
+      for (std::size_t i = 0; i < document_.state().pins.size(); ++i) {
+        const bool is_held = pull_ && pull_->pin == i;
+        marks.dots.push_back({document_.place_of(document_.state().pins[i]),
+                              color_of(is_held ? colors_.hovered : colors_.selected),
+                              is_held ? 7.0F : 5.5F});
       }
     }
     if (layers.problems) {
@@ -107,15 +126,8 @@ Overlay Viewport::make_overlay() const {
     const auto middle = camera_.project(pivot);
     const ToolSettings& tools = document_.tools();
     if (tools.proportional && middle) {
-      const double radius = target_.options().proportional.radius / camera_.pixel_size(pivot);
-      constexpr int parts = 96;
-      for (int i = 0; i < parts; ++i) {
-        const auto at = [&](int k) {
-          const double angle = 2 * M_PI * k / parts;
-          return on_screen(middle->pixel + radius * Pixel(std::cos(angle), std::sin(angle)));
-        };
-        overlay.lines.push_back({at(i), at(i + 1), color_of(colors_.text, 0.6), 1.3F});
-      }
+      add_circle(middle->pixel, target_.options().proportional.radius / camera_.pixel_size(pivot),
+                 color_of(colors_.text, 0.6), overlay);
     }
   } else if (const std::optional<GizmoFrame> frame = gizmo();
              frame && gesture_ != Gesture::box && gesture_ != Gesture::lasso) {
@@ -134,6 +146,10 @@ Overlay Viewport::make_overlay() const {
       overlay.lines.push_back({on_screen(line[i]), on_screen(line[(i + 1) % line.size()]),
                                color_of(colors_.cage, 0.9), 1.2F});
     }
+  }
+  if (document_.tools().tool == Tool::paint && document_.has_model() &&
+      (gesture_ == Gesture::none || gesture_ == Gesture::paint) && underMouse()) {
+    add_circle(cursor_, document_.tools().brush_radius, color_of(colors_.text, 0.7), overlay);
   }
   if (box_armed_ && gesture_ == Gesture::none) {
     const Color color = color_of(colors_.text, 0.4);
@@ -187,6 +203,12 @@ void Viewport::paint_texts(QPainter& painter) const {
       mode = tr("At rest, for comparison");
     }
     painter.drawText(QRectF(12, 26, width() - 24, 20), Qt::AlignLeft | Qt::AlignVCenter, mode);
+    if (const std::size_t hidden = document_.state().hidden_faces.size(); hidden > 0) {
+      painter.drawText(QRectF(12, 44, width() - 24, 20), Qt::AlignLeft | Qt::AlignVCenter,
+                       tr("%1 of %2 faces hidden; Alt+H shows them")
+                           .arg(hidden)
+                           .arg(document_.cage_rest().face_count()));
+    }
   }
   paint_legend(painter);
   if (!caption_.isEmpty()) {

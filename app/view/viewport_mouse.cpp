@@ -2,6 +2,7 @@
 #include "app/edit/select.h"
 #include "app/view/viewport.h"
 
+#include <QContextMenuEvent>
 #include <QMouseEvent>
 #include <QWheelEvent>
 
@@ -84,6 +85,9 @@ void Viewport::hover(const Pixel& cursor) {
   const std::optional<Pick> before = hovered_;
   const Handle handle_before = hovered_handle_;
   forget_hover();
+  if (document_.tools().tool == Tool::paint) {
+    update(); // the brush goes along
+  }
   if (document_.has_cage() && !drag_.is_active()) {
     refresh_graph();
     if (const std::optional<GizmoFrame> frame = gizmo()) {
@@ -98,7 +102,13 @@ void Viewport::hover(const Pixel& cursor) {
   if (!same || handle_before != hovered_handle_ || box_armed_) {
     update();
   }
-  if (document_.has_cage()) {
+  if (document_.tools().tool == Tool::paint && document_.has_model()) {
+    Q_EMIT hint(tr("Paint: the cage becomes finer here \u00b7 Ctrl: coarser \u00b7 Shift: erase "
+                   "\u00b7 Ctrl+wheel: size of the brush"));
+  } else if (document_.tools().tool == Tool::pull && document_.mode() == Mode::deform) {
+    Q_EMIT hint(tr("Drag the model \u00b7 click: a pin that holds it \u00b7 Ctrl+click: away with "
+                   "the pin"));
+  } else if (document_.has_cage()) {
     Q_EMIT hint(hovered_handle_ != Handle::none && hovered_handle_ != Handle::trackball
                     ? tr("Drag to transform \u00b7 Ctrl: snap \u00b7 Shift: precise")
                 : hovered_ ? tr("Click to select \u00b7 Shift: add \u00b7 double click: loop")
@@ -126,15 +136,24 @@ void Viewport::mousePressEvent(QMouseEvent* event) {
     return;
   }
   const Qt::KeyboardModifiers modifiers = event->modifiers();
-  const bool alt_left = event->button() == Qt::LeftButton && modifiers.testFlag(Qt::AltModifier);
-  if (event->button() == Qt::MiddleButton || alt_left) {
-    gesture_ = modifiers.testFlag(Qt::ShiftModifier)     ? Gesture::pan
-               : modifiers.testFlag(Qt::ControlModifier) ? Gesture::zoom
-                                                         : Gesture::orbit;
+  if (event->button() == Qt::RightButton && (pull_ || stroke_)) {
+    end_pull(false);
+    end_stroke(false);
     return;
   }
   if (event->button() == Qt::RightButton && (box_armed_ || gesture_ != Gesture::none)) {
     forget_outline();
+    return;
+  }
+  if (event->button() == Qt::RightButton) {
+    menu_press_ = cursor_;
+  }
+  if (const std::optional<CameraMove> move = camera_move(key_map_, event->button(), modifiers)) {
+    begin_camera_move(*move);
+    return;
+  }
+  if (event->button() == Qt::LeftButton && !box_armed_ && gesture_ == Gesture::none &&
+      (pull_press(modifiers) || paint_press(modifiers))) {
     return;
   }
   if (event->button() != Qt::LeftButton || !document_.has_cage()) {
@@ -164,10 +183,27 @@ void Viewport::mousePressEvent(QMouseEvent* event) {
   }
 }
 
+void Viewport::begin_camera_move(CameraMove move) {
+  switch (move) {
+  case CameraMove::orbit:
+    gesture_ = Gesture::orbit;
+    break;
+  case CameraMove::pan:
+    gesture_ = Gesture::pan;
+    break;
+  case CameraMove::zoom:
+    gesture_ = Gesture::zoom;
+    break;
+  }
+}
+
 void Viewport::mouseMoveEvent(QMouseEvent* event) {
   const Pixel at = pixel_of(event->position());
   const Pixel moved = at - cursor_;
   cursor_ = at;
+  if (menu_press_ && (at - *menu_press_).norm() >= drag_distance) {
+    menu_press_.reset();
+  }
   if (drag_.is_active()) {
     drag_.set_snapping(document_.tools().snap != event->modifiers().testFlag(Qt::ControlModifier));
     drag_.set_precise(event->modifiers().testFlag(Qt::ShiftModifier));
@@ -220,6 +256,14 @@ void Viewport::mouseMoveEvent(QMouseEvent* event) {
         break;
       }
     }
+    const bool selects =
+        box_armed_ || lasso || !plain || document_.tools().tool == Tool::select_box;
+    if (turns_beside_the_cage(key_map_) && !selects) {
+      gesture_ = Gesture::orbit;
+      camera_.orbit(moved);
+      camera_moved();
+      break;
+    }
     gesture_ = lasso && !box_armed_ ? Gesture::lasso : Gesture::box;
     lasso_ = {press_.at, at};
     update();
@@ -234,6 +278,12 @@ void Viewport::mouseMoveEvent(QMouseEvent* event) {
   case Gesture::box:
     update();
     break;
+  case Gesture::pull:
+    pull_move();
+    break;
+  case Gesture::paint:
+    add_dabs(false);
+    break;
   case Gesture::none:
   case Gesture::transform:
     hover(at);
@@ -243,6 +293,10 @@ void Viewport::mouseMoveEvent(QMouseEvent* event) {
 
 void Viewport::mouseReleaseEvent(QMouseEvent* event) {
   cursor_ = pixel_of(event->position());
+  const bool asks_for_menu = event->button() == Qt::RightButton && menu_press_;
+  if (event->button() == Qt::RightButton) {
+    menu_press_.reset();
+  }
   const Gesture gesture = gesture_;
   switch (gesture) {
   case Gesture::transform:
@@ -256,6 +310,16 @@ void Viewport::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() == Qt::LeftButton) {
       box_armed_ = false;
       click(press_);
+    }
+    break;
+  case Gesture::pull:
+    if (event->button() == Qt::LeftButton) {
+      end_pull(true);
+    }
+    break;
+  case Gesture::paint:
+    if (event->button() == Qt::LeftButton) {
+      end_stroke(true);
     }
     break;
   case Gesture::box:
@@ -272,6 +336,18 @@ void Viewport::mouseReleaseEvent(QMouseEvent* event) {
   if (!drag_.is_active() && !loop_cut_) {
     hover(cursor_);
   }
+  if (asks_for_menu) {
+    Q_EMIT menuRequested(event->position().toPoint());
+  }
+}
+
+/// The mouse asks for the menu when its button is let go: see mouseReleaseEvent(). This is the
+/// keyboard's way.
+void Viewport::contextMenuEvent(QContextMenuEvent* event) {
+  if (event->reason() == QContextMenuEvent::Keyboard && !drag_.is_active() && !loop_cut_) {
+    Q_EMIT menuRequested(rect().center());
+  }
+  event->accept();
 }
 
 void Viewport::mouseDoubleClickEvent(QMouseEvent* event) {
@@ -310,7 +386,12 @@ void Viewport::mouseDoubleClickEvent(QMouseEvent* event) {
 void Viewport::wheelEvent(QWheelEvent* event) {
   const QPoint pixels = event->pixelDelta();
   const double steps = event->angleDelta().y() / 120.0;
-  if (drag_.is_active()) {
+  const double zoom_steps = wheel_reversed_ ? -steps : steps;
+  if (document_.tools().tool == Tool::paint && event->modifiers().testFlag(Qt::ControlModifier)) {
+    ToolSettings tools = document_.tools();
+    tools.brush_radius = std::clamp(tools.brush_radius * std::pow(1.15, steps), 4.0, 500.0);
+    document_.set_tools(tools);
+  } else if (drag_.is_active()) {
     ToolSettings tools = document_.tools();
     if (tools.proportional && steps != 0) {
       tools.proportional_radius =
@@ -327,7 +408,7 @@ void Viewport::wheelEvent(QWheelEvent* event) {
     camera_.pan(Pixel(pixels.x(), pixels.y())); // two fingers on a track pad
     camera_moved();
   } else if (steps != 0) {
-    camera_.zoom(steps, pixel_of(event->position()));
+    camera_.zoom(zoom_steps, pixel_of(event->position()));
     camera_moved();
   }
   event->accept();

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <variant>
 
@@ -339,6 +340,112 @@ TEST_F(SessionTest, SaysThatPosesGoWithTheCageTheyFit) {
   EXPECT_EQ(session_.document().state().poses.size(), 1U);
 }
 
+TEST_F(SessionTest, MovesSeveralModelsUnderOneCage) {
+  PolygonMesh eye(make_icosphere(1));
+  for (Vec3& p : eye.positions) {
+    p = 0.1 * p + Vec3(1, 0, 0);
+  }
+  ASSERT_TRUE(write_mesh(eye, path("eye.ply")));
+  open_and_bind();
+  drag(0, Vec3(0.3, 0, 0));
+  session_.editor().add_pose("Bent");
+  session_.add_model(path("eye.ply"));
+  wait();
+  EXPECT_EQ(session_.document().mode(), Mode::refine) << "to be bound with the other one";
+  EXPECT_EQ(session_.document().state().poses.size(), 1U);
+  EXPECT_EQ(session_.title().toStdString(), "model.obj and 1 more");
+  const std::size_t together = session_.document().model()->mesh.positions.size();
+  EXPECT_EQ(together, session_.document().model()->parts[1].first + eye.positions.size());
+  session_.bind();
+  wait();
+  ASSERT_EQ(session_.document().mode(), Mode::deform);
+  session_.editor().apply_pose(0);
+  const std::vector<Vec3> shown = shown_model();
+  session_.export_model(path("out.obj"));
+  wait();
+  ASSERT_TRUE(failures_.empty()) << failures_.front();
+  std::size_t at = 0;
+  for (const char* name : {"out-model.obj", "out-eye.obj"}) {
+    const auto written = read_mesh(path(name));
+    ASSERT_TRUE(written) << written.error().message;
+    for (const Vec3& p : written->positions) {
+      ASSERT_LT((p - shown[at++]).norm(), 1e-5) << name;
+    }
+  }
+  EXPECT_EQ(at, together);
+  // And they come back together.
+  ASSERT_TRUE(session_.save_project(path("both.cagewright")));
+  session_.open(path("model.obj"));
+  wait();
+  EXPECT_EQ(session_.document().model()->parts.size(), 1U);
+  session_.open(path("both.cagewright"));
+  wait();
+  ASSERT_TRUE(failures_.empty()) << failures_.front();
+  EXPECT_EQ(session_.document().model()->mesh.positions.size(), together);
+  EXPECT_EQ(session_.document().mode(), Mode::deform);
+}
+
+TEST_F(SessionTest, ExportsTheTimeLineAsOneFileThatMoves) {
+  open_and_bind();
+  session_.export_animation(path("no.glb"));
+  ASSERT_EQ(failures_.size(), 1U);
+  failures_.clear();
+  session_.editor().set_keyframe(1);
+  drag(0, Vec3(0.3, 0, 0));
+  session_.editor().set_keyframe(5);
+  TimeLine line = session_.document().state().time_line;
+  line.last = 7;
+  session_.editor().set_time_line(line, "Shorter");
+  for (const char* name : {"moves.glb", "moves.pc2", "moves.mdd"}) {
+    session_.export_animation(path(name));
+    wait();
+    ASSERT_TRUE(failures_.empty()) << failures_.front();
+  }
+  // Of the point cache frame 3 is what the window shows there.
+  session_.document().set_time(3);
+  const std::vector<Vec3> shown = shown_model();
+  QFile file(QString::fromStdString(path("moves.pc2").string()));
+  ASSERT_TRUE(file.open(QIODevice::ReadOnly));
+  const QByteArray bytes = file.readAll();
+  ASSERT_EQ(static_cast<std::size_t>(bytes.size()), 32 + 7 * shown.size() * 12);
+  for (std::size_t v = 0; v < shown.size(); ++v) {
+    float xyz[3];
+    std::memcpy(xyz, bytes.constData() + 32 + (2 * shown.size() + v) * 12, sizeof(xyz));
+    ASSERT_LT((Vec3(xyz[0], xyz[1], xyz[2]) - shown[v]).norm(), 1e-5);
+  }
+  const auto glb = read_mesh(path("moves.glb"));
+  ASSERT_TRUE(glb) << glb.error().message;
+}
+
+TEST_F(SessionTest, KeepsTheMixOfPosesAndWhatWasPainted) {
+  open_and_bind();
+  drag(0, Vec3(0.3, 0, 0));
+  session_.editor().add_pose("A");
+  session_.editor().reset_pose();
+  session_.editor().mix_pose(0, 0.25);
+  session_.editor().set_keyframe(3);
+  const std::vector<Vec3> mixed = cage();
+  std::vector<float> density(session_.document().model()->mesh.positions.size(), 0.0F);
+  density[5] = 0.5F;
+  density[7] = -1;
+  session_.editor().set_density(std::make_shared<const std::vector<float>>(density), "Paint");
+  ASSERT_TRUE(session_.save_project(path("mix.cagewright")));
+  session_.open(path("model.obj"));
+  wait();
+  EXPECT_FALSE(session_.document().state().density);
+  session_.open(path("mix.cagewright"));
+  wait();
+  ASSERT_TRUE(failures_.empty()) << failures_.front();
+  EXPECT_EQ(cage(), mixed);
+  EXPECT_EQ(session_.document().state().poses[0].share, 0.25);
+  EXPECT_EQ(session_.document().state().time_line.keys[0].shares, std::vector<double>{0.25});
+  ASSERT_TRUE(session_.document().state().density);
+  EXPECT_EQ(*session_.document().state().density, density);
+  EXPECT_EQ(session_.settings().density, DensitySource::painted);
+  session_.editor().mix_pose(0, 1);
+  EXPECT_EQ(cage(), *session_.document().state().poses[0].positions);
+}
+
 TEST_F(SessionTest, ExportsASequenceAlongTheKeyframes) {
   open_and_bind();
   session_.document().set_time(1);
@@ -472,6 +579,58 @@ TEST_F(SessionTest, RefusesToBindAnOpenCage) {
 }
 
 /// A project with one thing of it replaced.
+TEST_F(SessionTest, FitsACageOfAnotherUnitUpAxisAndPlace) {
+  open_and_bind();
+  drag(0, Vec3(0.05, 0, 0));
+  session_.editor().add_pose("Bent");
+  session_.refine();
+  const std::vector<Vec3> good = cage();
+  const auto twisted = [](const Vec3& p) { return Vec3(100 * Vec3(p.x(), -p.z(), p.y() + 4)); };
+  PolygonMesh wrong = session_.document().cage();
+  std::ranges::transform(wrong.positions, wrong.positions.begin(), twisted);
+  session_.editor().adjust_cage(std::make_shared<const PolygonMesh>(wrong), twisted, "Twist");
+
+  session_.fit_cage_to_model();
+  wait();
+  EXPECT_NE(message_.find("turned by"), std::string::npos) << message_;
+  const std::vector<Vec3> fitted = cage();
+  for (std::size_t v = 0; v < good.size(); ++v) {
+    EXPECT_LT((fitted[v] - good[v]).norm(), 0.2) << v;
+  }
+  // What a pose moves it moves there, too.
+  ASSERT_EQ(session_.document().state().poses.size(), 1U);
+  const std::vector<Vec3>& pose = *session_.document().state().poses[0].positions;
+  EXPECT_LT((pose[0] - fitted[0] - Vec3(0.05, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((pose[1] - fitted[1]).norm(), 1e-9);
+  session_.fit_cage_to_model(Session::Then::bind);
+  wait();
+  EXPECT_NE(message_.find("no scale"), std::string::npos) << message_;
+  session_.editor().undo_stack().undo();
+  EXPECT_EQ(cage(), wrong.positions) << "a step of undo";
+}
+
+TEST_F(SessionTest, MendsCagesAndSaysWhereThereIsNothingToMend) {
+  session_.weld_cage();
+  EXPECT_NE(message_.find("no cage"), std::string::npos) << message_;
+  open_and_bind();
+  session_.weld_cage();
+  EXPECT_NE(message_.find("go back to refining"), std::string::npos) << message_;
+  session_.refine();
+  session_.weld_cage();
+  EXPECT_NE(message_.find("no vertices"), std::string::npos) << message_;
+  session_.turn_cage_outward();
+  EXPECT_NE(message_.find("all faces look outward"), std::string::npos) << message_;
+  PolygonMesh turned;
+  const PolygonMesh good = session_.document().cage();
+  turned.positions = good.positions;
+  for (std::size_t f = 0; f < good.face_count(); ++f) {
+    turned.add_face(std::vector<Index>(good.face(f).rbegin(), good.face(f).rend()));
+  }
+  session_.editor().replace_cage(std::make_shared<const PolygonMesh>(turned), nullptr, "Turned");
+  session_.turn_cage_outward(Session::Then::bind);
+  ASSERT_TRUE(wait_until([this] { return session_.document().mode() == Mode::deform; }));
+}
+
 TEST_F(SessionTest, RefusesNumbersOutOfRangeAndNamesThem) {
   open_and_bind();
   session_.editor().set_keyframe(4);

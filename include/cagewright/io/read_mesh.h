@@ -17,7 +17,8 @@ namespace cagewright {
 /// The content decides when it shows its format (a PLY file named .obj is read as PLY), else the
 /// extension. Vertices and faces keep the order of the file: no vertices are merged, so an STL file
 /// has three for each facet. Faces of one or two corners are left out, and a corner named twice in
-/// a row is taken once (docs/formats.md); ModelFile tells. Text is rounded correctly to double. What each format gives:
+/// a row is taken once (docs/formats.md); ModelFile tells. Text is rounded correctly to double.
+/// What each format gives:
 ///  - OBJ: polygons, colours after the position, objects and groups; lines and points are skipped.
 ///  - PLY: polygons and triangle strips, vertex colours; other elements and properties are skipped.
 ///  - STL: facets; several solids make one mesh.

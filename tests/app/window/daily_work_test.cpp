@@ -3,10 +3,15 @@
 
 #include "app/panels/time_line_panel.h"
 
+#include <QContextMenuEvent>
 #include <QCoreApplication>
+#include <QDialog>
+#include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QEnterEvent>
+#include <QLabel>
 #include <QListWidget>
+#include <QMenu>
 #include <QMessageBox>
 #include <QToolButton>
 
@@ -25,6 +30,9 @@ protected:
     settle();
   }
   void click_frame(int frame) {
+    if (find<QDockWidget>("dock_time_line")->isHidden()) {
+      show_time_line();
+    }
     auto* ruler = find<TimeRuler>("time_ruler");
     QTest::mouseClick(ruler, Qt::LeftButton, {},
                       QPoint(static_cast<int>(std::lround(ruler->x_of(frame))), 20));
@@ -253,6 +261,22 @@ TEST_F(DailyWork, AsksBeforeItBindsACageThatIsNone) {
   EXPECT_TRUE(box->text().contains("outside")) << box->text().toStdString();
   answer(box, "bind_anyway");
   ASSERT_TRUE(wait_until([this] { return document().mode() == Mode::deform; }));
+  session().refine();
+
+  PolygonMesh other_unit = beside; // in centimetres, z up, and elsewhere
+  for (Vec3& p : other_unit.positions) {
+    p = 100 * Vec3(p.x(), -p.z(), p.y());
+  }
+  load_cage(other_unit);
+  click("bind");
+  wait_for_job();
+  box = question("binding_question");
+  EXPECT_TRUE(box->text().contains("turned by")) << box->text().toStdString();
+  keep("binding-question");
+  answer(box, "fit_cage");
+  ASSERT_TRUE(wait_until([this] { return document().mode() == Mode::deform; }));
+  EXPECT_LT(greatest_distance(document().cage_rest().positions, good.positions),
+            0.1 * document().diagonal());
 }
 
 TEST_F(DailyWork, ExtrudesInOneStepThatEscapeTakesBackWhole) {
@@ -348,6 +372,92 @@ TEST_F(DailyWork, RecoversAProjectUnderItsOwnName) {
   EXPECT_TRUE(window->isWindowModified());
   press(Qt::Key_S, Qt::ControlModifier);
   EXPECT_TRUE(wait_until([this] { return !window->isWindowModified(); }));
+}
+
+TEST_F(DailyWork, FindsAnyCommandByAPartOfItsName) {
+  open_model();
+  press(Qt::Key_F3);
+  QDialog* search = nullptr;
+  ASSERT_TRUE(wait_until([&] {
+    search = window->findChild<QDialog*>("command_search");
+    return search != nullptr && search->isVisible();
+  }));
+  auto* text = search->findChild<QLineEdit*>("command_text");
+  QTest::keyClicks(text, "dark");
+  QTest::keyClick(text, Qt::Key_Return);
+  EXPECT_LT(window->palette().color(QPalette::Window).lightness(), 100);
+  ASSERT_TRUE(wait_until([&] { return window->findChild<QDialog*>("command_search") == nullptr; }));
+  trigger("dark");
+}
+
+TEST_F(DailyWork, OffersWhatCanBeDoneUnderThePointer) {
+  open_model();
+  generate();
+  const Index v = front_vertex();
+  const QPoint place = at(document().shown_cage_positions()[v]);
+  QTest::mousePress(&view(), Qt::RightButton, {}, place);
+  QContextMenuEvent event(QContextMenuEvent::Mouse, place, view().mapToGlobal(place));
+  QCoreApplication::sendEvent(&view(), &event);
+  QTest::mouseRelease(&view(), Qt::RightButton, {}, place);
+  QMenu* menu = nullptr;
+  ASSERT_TRUE(wait_until([&] {
+    menu = window->findChild<QMenu*>("view_menu");
+    return menu != nullptr && menu->isVisible();
+  }));
+  EXPECT_EQ(document().selection().vertices, std::vector<Index>{v});
+  EXPECT_TRUE(menu->actions().contains(find<QAction>("bind_model")));
+  EXPECT_FALSE(menu->actions().contains(find<QAction>("keyframe")));
+  menu->close();
+  // The right button ends a drag, and no menu comes up.
+  press(Qt::Key_G);
+  QTest::mousePress(&view(), Qt::RightButton, {}, place);
+  QCoreApplication::sendEvent(&view(), &event);
+  QTest::mouseRelease(&view(), Qt::RightButton, {}, place);
+  EXPECT_FALSE(view().transforming());
+  EXPECT_EQ(QApplication::activePopupWidget(), nullptr);
+}
+
+TEST_F(DailyWork, GoesBackAlongTheHistory) {
+  open_model();
+  generate();
+  const std::vector<Vec3> made = cage();
+  press(Qt::Key_1);
+  press(Qt::Key_A);
+  press(Qt::Key_A, Qt::AltModifier);
+  press(Qt::Key_A);
+  press(Qt::Key_A, Qt::AltModifier);
+  drag_vertex({30, 0});
+  auto* list = find<QListWidget>("history");
+  ASSERT_EQ(list->count(), 4) << "opened, generated, selected, moved";
+  EXPECT_TRUE(list->item(2)->text().startsWith("Select ("));
+  EXPECT_EQ(list->currentRow(), 3);
+  find<QDockWidget>("dock_history")->raise();
+  settle();
+  QTest::mouseClick(list->viewport(), Qt::LeftButton, {},
+                    list->visualItemRect(list->item(1)).center());
+  EXPECT_EQ(cage(), made);
+  EXPECT_EQ(list->currentRow(), 1);
+  keep("history");
+}
+
+TEST_F(DailyWork, ShowsTheViewAloneAndWhatWasRefused) {
+  open_model();
+  generate();
+  press(Qt::Key_Space, Qt::ControlModifier);
+  EXPECT_FALSE(find<QDockWidget>("dock_figures")->isVisible());
+  keep("full-view");
+  press(Qt::Key_Space, Qt::ControlModifier);
+  EXPECT_TRUE(find<QDockWidget>("dock_figures")->isVisible());
+  const Layers before = document().layers();
+  press(Qt::Key_Z);
+  EXPECT_TRUE(document().layers().wireframe);
+  press(Qt::Key_Z);
+  EXPECT_FALSE(document().layers().smooth_normals);
+  press(Qt::Key_Z);
+  EXPECT_EQ(document().layers(), before);
+  press(Qt::Key_Delete); // nothing is selected
+  EXPECT_TRUE(find<QLabel>("notice")->isVisible());
+  keep("refused");
 }
 
 } // namespace

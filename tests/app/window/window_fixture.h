@@ -15,6 +15,7 @@
 #include <QCheckBox>
 #include <QDialog>
 #include <QDialogButtonBox>
+#include <QDockWidget>
 #include <QFileDialog>
 #include <QLineEdit>
 #include <QMimeData>
@@ -171,6 +172,19 @@ protected:
     wait_for_job();
     ASSERT_TRUE(document().has_cage());
   }
+  /// The model in a cage that is there already: quicker than to generate one.
+  void open_caged() {
+    ASSERT_TRUE(write_mesh(PolygonMesh(make_torus(0.62, 16, 8)), path("cage.obj").toStdString()));
+    session().open(path("model.obj").toStdString(), path("cage.obj").toStdString());
+    wait_for_job();
+    ASSERT_TRUE(document().has_cage());
+  }
+  /// The time line is folded until there is something on it.
+  void show_time_line() {
+    find<QDockWidget>("dock_time_line")->show();
+    find<QDockWidget>("dock_time_line")->raise();
+    settle();
+  }
   void bind() {
     click("bind");
     wait_for_job();
@@ -191,7 +205,10 @@ protected:
                                                }) -
                               p.begin());
   }
-  void drag(QPoint from, QPoint to) { test::drag_mouse(view(), from, to); }
+  void drag(QPoint from, QPoint to, Qt::KeyboardModifiers modifiers = {},
+            Qt::MouseButton button = Qt::LeftButton) {
+    test::drag_mouse(view(), from, to, modifiers, button);
+  }
   /// Selects the vertex by a click and drags the gizmo's arrow along x.
   void drag_gizmo(int pixels) {
     const Index v = front_vertex();

@@ -22,12 +22,12 @@ namespace {
 TEST_F(Window, LeadsFromAnEmptyWindowToAnExportedModel) {
   auto* guide = find<QLabel>("guide_text");
   EXPECT_TRUE(guide->text().contains("Open a model"));
-  EXPECT_TRUE(find<QLabel>("welcome")->isVisible());
+  EXPECT_TRUE(find<QWidget>("welcome")->isVisible());
   EXPECT_FALSE(find<QPushButton>("generate")->isEnabled());
   keep("empty");
 
   open_model();
-  EXPECT_FALSE(find<QLabel>("welcome")->isVisible());
+  EXPECT_FALSE(find<QWidget>("welcome")->isVisible());
   EXPECT_TRUE(guide->text().contains("Make a cage"));
   generate();
   ASSERT_TRUE(wait_until([this] { return !session().checker().busy(); }));
@@ -138,6 +138,7 @@ TEST_F(Window, PlaysKeyframes) {
   generate();
   bind();
   const std::vector<Vec3> rest = shown();
+  show_time_line();
   click("set_keyframe"); // at the first frame, at rest
   drag_gizmo(70);
   const std::vector<Vec3> posed = cage();

@@ -1,0 +1,112 @@
+#include "app/panels/command_search.h"
+
+#include <QAction>
+#include <QCoreApplication>
+#include <QKeyEvent>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPointer>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace cagewright::app {
+namespace {
+
+/// Whether all words that were typed begin words of the name, or are parts of it.
+bool matches(const QString& name, const QStringList& words) {
+  return std::ranges::all_of(
+      words, [&](const QString& word) { return name.contains(word, Qt::CaseInsensitive); });
+}
+
+} // namespace
+
+QString plain_text(const QAction& action) {
+  QString text = action.text();
+  return text.remove('&').remove("...");
+}
+
+CommandSearch::CommandSearch(const QList<QAction*>& commands, QWidget* parent)
+    : QDialog(parent, Qt::Popup | Qt::FramelessWindowHint), commands_(commands) {
+  setObjectName("command_search");
+  setAttribute(Qt::WA_DeleteOnClose);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(6, 6, 6, 6);
+  text_ = new QLineEdit;
+  text_->setObjectName("command_text");
+  text_->setPlaceholderText(tr("Search a command"));
+  text_->installEventFilter(this);
+  list_ = new QListWidget;
+  list_->setObjectName("command_list");
+  list_->setFocusPolicy(Qt::NoFocus);
+  layout->addWidget(text_);
+  layout->addWidget(list_);
+  resize(420, 320);
+  connect(text_, &QLineEdit::textChanged, this, &CommandSearch::update_list);
+  connect(list_, &QListWidget::itemClicked, this, &CommandSearch::run);
+  std::ranges::sort(commands_, [](const QAction* a, const QAction* b) {
+    return plain_text(*a).localeAwareCompare(plain_text(*b)) < 0;
+  });
+  update_list();
+  text_->setFocus();
+}
+
+void CommandSearch::update_list() {
+  const QStringList words = text_->text().split(' ', Qt::SkipEmptyParts);
+  list_->clear();
+  shown_.clear();
+  for (QAction* command : commands_) {
+    const QString name = plain_text(*command);
+    if (!matches(name, words)) {
+      continue;
+    }
+    const QString keys = command->shortcut().toString(QKeySequence::NativeText);
+    auto* item = new QListWidgetItem(keys.isEmpty() ? name : name + "\t" + keys, list_);
+    item->setToolTip(command->toolTip());
+    if (!command->isEnabled()) { // seen, so that one knows it exists
+      item->setFlags(item->flags() & ~Qt::ItemIsEnabled);
+    }
+    shown_.append(command);
+  }
+  for (int row = 0; row < list_->count(); ++row) {
+    if (shown_[row]->isEnabled()) {
+      list_->setCurrentRow(row);
+      break;
+    }
+  }
+}
+
+void CommandSearch::run() {
+  const int row = list_->currentRow();
+  if (row < 0 || row >= shown_.size() || !shown_[row]->isEnabled()) {
+    return;
+  }
+  const QPointer<QAction> command = shown_[row];
+  close();
+  if (command) {
+    command->trigger();
+  }
+}
+
+bool CommandSearch::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::KeyPress) {
+    const auto* key = static_cast<QKeyEvent*>(event);
+    switch (key->key()) {
+    case Qt::Key_Down:
+    case Qt::Key_Up:
+    case Qt::Key_PageDown:
+    case Qt::Key_PageUp:
+      QCoreApplication::sendEvent(list_, event);
+      return true;
+    case Qt::Key_Return:
+    case Qt::Key_Enter:
+      run();
+      return true;
+    default:
+      break;
+    }
+  }
+  return QDialog::eventFilter(watched, event);
+}
+
+} // namespace cagewright::app

@@ -1,0 +1,108 @@
+// Painting on the model where the cage is to be finer.
+#include "app/view/viewport.h"
+
+#include "app/edit/density_brush.h"
+
+#include <cmath>
+
+namespace cagewright::app {
+
+/// What of the model lies under the brush.
+std::optional<Dab> Viewport::dab_at(const Pixel& cursor) const {
+  if (!document_.has_model()) {
+    return std::nullopt;
+  }
+  const Model& model = *document_.model();
+  const Ray sight = camera_.ray(cursor);
+  const RayHit hit = model.bvh.first_hit(sight.origin, sight.direction);
+  if (!hit) {
+    return std::nullopt;
+  }
+  const auto& [a, b, c] = model.bvh.corners(hit.triangle);
+  Dab dab;
+  dab.place = sight.at(hit.distance);
+  const Vec3 normal = (b - a).cross(c - a);
+  // Normals of the model's vertices need not look outward: the side is theirs.
+  const Triangle& corners = model.triangles[hit.triangle];
+  const Vec3 of_corners =
+      model.normals[corners[0]] + model.normals[corners[1]] + model.normals[corners[2]];
+  dab.normal = of_corners.norm() > 0 ? Vec3(of_corners.normalized())
+               : normal.norm() > 0   ? Vec3(normal.normalized())
+                                     : camera_.to_viewer(dab.place);
+  dab.radius = document_.tools().brush_radius * camera_.pixel_size(dab.place);
+  return dab;
+}
+
+bool Viewport::paint_press(const Qt::KeyboardModifiers& modifiers) {
+  if (document_.tools().tool != Tool::paint || !document_.has_model()) {
+    return false;
+  }
+  if (document_.mode() == Mode::deform) {
+    Q_EMIT editor_.message(tr("go back to refining first: the next cage is made for the model at "
+                              "rest"));
+    return true;
+  }
+  if (!dab_at(cursor_)) {
+    return false; // beside the model
+  }
+  editor_.begin_step();
+  stroke_.emplace();
+  stroke_->erases = modifiers.testFlag(Qt::ShiftModifier);
+  stroke_->sign = modifiers.testFlag(Qt::ControlModifier) ? -1 : 1;
+  stroke_->last = cursor_;
+  if (const SharedDensity& before = document_.state().density) {
+    stroke_->density = *before;
+  } else {
+    stroke_->density.assign(document_.model_positions().size(), 0.0F);
+  }
+  gesture_ = Gesture::paint;
+  add_dabs(true);
+  return true;
+}
+
+/// Dabs follow each other closely along the way of the pointer, so that a quick stroke is no row of
+/// spots.
+void Viewport::add_dabs(bool first) {
+  const ToolSettings& tools = document_.tools();
+  const double step = std::max(1.0, tools.brush_radius / 4);
+  const Pixel way = cursor_ - stroke_->last;
+  const int count = first ? 1 : static_cast<int>(way.norm() / step);
+  const Model& model = *document_.model();
+  for (int i = 1; i <= count; ++i) {
+    const Pixel at = first ? cursor_ : Pixel(stroke_->last + way * (i * step / way.norm()));
+    if (std::optional<Dab> dab = dab_at(at)) {
+      dab->amount = stroke_->sign * tools.brush_strength;
+      dab->erases = stroke_->erases;
+      add_dab(*dab, model.mesh.positions, model.normals, stroke_->density);
+    }
+  }
+  if (count > 0) {
+    if (!first) {
+      stroke_->last += way * (count * step / way.norm());
+    }
+    document_.set_density(std::make_shared<const std::vector<float>>(stroke_->density));
+  }
+  update();
+}
+
+void Viewport::end_stroke(bool keep) {
+  if (!stroke_) {
+    return;
+  }
+  stroke_.reset();
+  gesture_ = Gesture::none;
+  if (keep) {
+    editor_.end_step(tr("Paint Density"));
+  } else {
+    editor_.cancel_step();
+  }
+  update();
+}
+
+void Viewport::clear_density() {
+  if (document_.state().density && !stroke_) {
+    editor_.set_density(nullptr, tr("Clear Painted Density"));
+  }
+}
+
+} // namespace cagewright::app
