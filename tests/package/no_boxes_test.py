@@ -40,7 +40,7 @@ class NoBoxes(unittest.TestCase):
             for asked in [["--method", "boxes"], ["--method", "boxes-improved"], ["--depth", "3"]]:
                 cage = pathlib.Path(folder) / "cage.obj"
                 refused = run("generate", SAMPLE, "-o", cage, *asked)
-                self.assertEqual(refused.returncode, 2, refused.stdout + refused.stderr)
+                self.assertEqual(refused.returncode, 3, refused.stdout + refused.stderr)
                 self.assertIn("CGAL", refused.stderr)
                 self.assertIn("CAGEWRIGHT_WITH_BOXES", refused.stderr)
                 self.assertFalse(cage.exists())
