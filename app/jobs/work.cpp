@@ -278,16 +278,16 @@ Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMes
 Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
                         const TimeLine& time_line, const std::filesystem::path& path,
                         const Progress& progress) {
-  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage_at_rest);
-  if (!solver) {
-    return solver.error();
+  const auto coordinates = prepare_coordinates(cage_at_rest, {}, progress.part(0, 0.1));
+  if (!coordinates) {
+    return coordinates.error();
   }
   std::vector<std::vector<Vec3>> keys;
   for (const Keyframe& key : time_line.keys) {
     keys.push_back(*key.positions);
   }
-  Result<StreamedPoses> moved = deform_streaming(*solver, cage_at_rest.positions, keys,
-                                                 model.mesh.positions, progress.part(0, 0.6));
+  Result<StreamedPoses> moved =
+      deform_streaming(**coordinates, keys, model.mesh.positions, progress.part(0.1, 0.6));
   if (!moved) {
     return moved.error();
   }

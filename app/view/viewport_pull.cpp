@@ -2,7 +2,7 @@
 #include "app/view/viewport.h"
 
 #include "app/edit/surface_pick.h"
-#include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/kinds.h>
 
 #include <algorithm>
 #include <array>
@@ -16,13 +16,13 @@ constexpr double pin_radius = 10; // so near to a pin the pointer takes it, in p
 /// The weights of a point on a triangle of the model, as the triangle's corners have them.
 std::shared_ptr<const std::vector<double>>
 weights_at(const PolygonMesh& cage, const std::array<Vec3, 3>& corners, const Vec3& shares) {
-  const Result<MeanValueSolver> solver = MeanValueSolver::create(cage);
-  if (!solver) {
+  const auto coordinates = prepare_coordinates(cage, {}, {});
+  if (!coordinates) {
     return nullptr; // it was bound to this cage: it has weights
   }
   constexpr std::size_t stride = 16;
   std::vector<double> of_corners(stride * cage.positions.size());
-  solver->solve(corners, of_corners, stride);
+  (*coordinates)->solve(corners, std::span<double>(of_corners), stride);
   std::vector<double> weights(cage.positions.size());
   for (std::size_t c = 0; c < weights.size(); ++c) {
     for (int k = 0; k < 3; ++k) {
