@@ -1,8 +1,13 @@
 #include "load.h"
 
+#include "session.h"
+
 #include "io/atomic_file.h"
+#include "io/linked_files.h"
 #include "io/source.h"
 #include <cagewright/io/mesh_format.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -76,15 +81,41 @@ Status can_write_output(const std::string& path, const std::vector<std::string>&
   return path == "-" ? success() : can_write_file(path);
 }
 
-Status can_write_mesh(const std::string& path, const std::vector<std::string>& inputs) {
+Status can_write_model(const std::string& path, const std::vector<std::string>& inputs) {
   std::error_code none;
-  const std::optional<MeshFormat> format = format_of_name(path);
-  if (!fs::is_directory(path, none) && (!format || *format == MeshFormat::gltf)) {
+  if (!fs::is_directory(path, none) && !format_of_name(path)) {
     return Error{ErrorCode::unsupported,
-                 one_line(path) + ": meshes are written as .obj, .ply, .stl or .off; use one of "
+                 one_line(path) + ": models are written as .obj, .ply, .stl, .off, .glb or .gltf; "
+                                  "use one of these"};
+  }
+  return can_write_output(path, inputs);
+}
+
+Status can_write_cage(const std::string& path, const std::vector<std::string>& inputs) {
+  std::error_code none;
+  if (!fs::is_directory(path, none) && format_of_name(path) == MeshFormat::gltf) {
+    return Error{ErrorCode::unsupported,
+                 one_line(path) + ": cages are written as .obj, .ply, .stl or .off; glTF holds "
+                                  "only triangles, in single precision ('cagewright convert' "
+                                  "makes it of the cage)"};
+  }
+  if (!fs::is_directory(path, none) && !format_of_name(path)) {
+    return Error{ErrorCode::unsupported,
+                 one_line(path) + ": cages are written as .obj, .ply, .stl or .off; use one of "
                                   "these"};
   }
   return can_write_output(path, inputs);
+}
+
+void warn_of_links(const ModelFile& model, const std::string& written) {
+  const fs::path folder = fs::path(written).parent_path();
+  for (const fs::path& link : linked_files(model.path())) {
+    if (!fs::exists(folder / link)) {
+      warn(fmt::format("{} refers to {}, which is not beside it; copy it from {}",
+                       one_line(written), one_line(link.string()),
+                       one_line(fs::absolute(model.path()).parent_path().string())));
+    }
+  }
 }
 
 } // namespace cagewright::cli

@@ -35,7 +35,14 @@ Error in_file(const std::string& path, Error error);
 /// none of those that the command reads: they would be lost. "-" and devices may always be written.
 Status can_write_output(const std::string& path, const std::vector<std::string>& inputs);
 
-/// The same for a mesh: its extension is that of a format we write.
-Status can_write_mesh(const std::string& path, const std::vector<std::string>& inputs = {});
+/// The same for a model: its extension is that of a format.
+Status can_write_model(const std::string& path, const std::vector<std::string>& inputs = {});
+
+/// The same for a cage, which must stay valid to the last digit: that of a format with doubles.
+Status can_write_cage(const std::string& path, const std::vector<std::string>& inputs = {});
+
+/// Says which files beside the model (images, material libraries) the written one refers to in
+/// vain, as it is in another folder.
+void warn_of_links(const ModelFile& model, const std::string& written);
 
 } // namespace cagewright::cli

@@ -39,20 +39,41 @@ std::vector<std::size_t> groups_named(const PolygonMesh& mesh, const std::string
                                                : std::vector<std::size_t>();
 }
 
-/// The names as they can be given: those that several have with their numbers.
-std::string list_of_names(const PolygonMesh& mesh) {
+/// The groups of an object, in OBJ.
+std::vector<std::size_t> groups_of_object(const std::vector<std::string>& objects,
+                                          const std::string& name) {
+  std::vector<std::size_t> found;
+  for (std::size_t g = 0; g < objects.size(); ++g) {
+    if (!name.empty() && objects[g] == name) {
+      found.push_back(g);
+    }
+  }
+  return found;
+}
+
+/// The names as they can be given: those that several groups have with their numbers, and then the
+/// objects that have groups.
+std::string list_of_names(const PolygonMesh& mesh, const std::vector<std::string>& objects) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& name : mesh.group_names) {
     ++counts[name];
   }
+  std::vector<std::string> names;
   std::map<std::string, std::size_t> met;
-  std::string list;
-  for (std::size_t g = 0; g < std::min(mesh.group_names.size(), most_listed); ++g) {
-    const std::string& name = mesh.group_names[g];
-    list += (list.empty() ? "" : ", ") + name;
-    list += counts[name] > 1 ? '#' + std::to_string(++met[name]) : "";
+  for (const std::string& name : mesh.group_names) {
+    names.push_back(counts[name] > 1 ? name + '#' + std::to_string(++met[name]) : name);
   }
-  const std::size_t more = mesh.group_names.size() - std::min(mesh.group_names.size(), most_listed);
+  for (const std::string& object : objects) {
+    if (!object.empty() && !counts.contains(object) &&
+        std::ranges::find(names, object) == names.end()) {
+      names.push_back(object);
+    }
+  }
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), most_listed); ++i) {
+    list += (i == 0 ? "" : ", ") + names[i];
+  }
+  const std::size_t more = names.size() - std::min(names.size(), most_listed);
   return more > 0 ? list + " and " + std::to_string(more) + " more" : list;
 }
 
@@ -80,16 +101,26 @@ void add_cage_object_option(CLI::App& command, ModelChoice& choice) {
                      "repeatable");
 }
 
-Result<std::vector<bool>> faces_named(const PolygonMesh& mesh, std::span<const std::string> names,
+Result<std::vector<bool>> faces_named(const ModelFile& file, std::span<const std::string> names,
                                       const std::string& option) {
+  const PolygonMesh& mesh = file.mesh();
+  std::vector<std::string> objects; // looked up if a name is that of no group
   std::vector<bool> is_chosen(mesh.group_names.size(), false);
   for (const std::string& name : names) {
-    const std::vector<std::size_t> groups = groups_named(mesh, name);
+    std::vector<std::size_t> groups = groups_named(mesh, name);
+    if (groups.empty() && !mesh.group_names.empty()) {
+      Result<MeshAttributes> attributes = file.attributes();
+      if (!attributes) {
+        return attributes.error();
+      }
+      objects = std::move(attributes->group_objects);
+      groups = groups_of_object(objects, name);
+    }
     if (groups.empty()) {
-      return Error{
-          ErrorCode::invalid_option,
-          option + ": the model has no group '" + name + "'" +
-              (mesh.group_names.empty() ? ", nor any other" : "; it has " + list_of_names(mesh))};
+      return Error{ErrorCode::invalid_option,
+                   option + ": the model has no group '" + name + "'" +
+                       (mesh.group_names.empty() ? ", nor any other"
+                                                 : "; it has " + list_of_names(mesh, objects))};
     }
     for (const std::size_t group : groups) {
       is_chosen[group] = true;
@@ -142,27 +173,33 @@ MeshPart part_of(const PolygonMesh& mesh, const std::vector<bool>& faces) {
 }
 
 Result<PolygonMesh> load_chosen(const std::string& path, const ModelChoice& choice) {
-  Result<PolygonMesh> mesh = load_mesh(path, choice.pose);
-  if (!mesh || choice.only.empty()) {
-    return mesh;
+  Result<ModelFile> file = load_model(path, choice.pose);
+  if (!file) {
+    return file.error();
   }
-  const Result<std::vector<bool>> faces = faces_named(*mesh, choice.only, "--only");
+  if (choice.only.empty()) {
+    return std::move(*file).take_mesh();
+  }
+  const Result<std::vector<bool>> faces = faces_named(*file, choice.only, "--only");
   if (!faces) {
     return in_file(path, faces.error());
   }
-  return part_of(*mesh, *faces).mesh;
+  return part_of(file->mesh(), *faces).mesh;
 }
 
 Result<PolygonMesh> load_cage(const std::string& path, const ModelChoice& choice) {
-  Result<PolygonMesh> mesh = load_mesh(path, choice.pose);
-  if (!mesh || choice.cage_objects.empty()) {
-    return mesh;
+  Result<ModelFile> file = load_model(path, choice.pose);
+  if (!file) {
+    return file.error();
   }
-  const Result<std::vector<bool>> faces = faces_named(*mesh, choice.cage_objects, "--cage-object");
+  if (choice.cage_objects.empty()) {
+    return std::move(*file).take_mesh();
+  }
+  const Result<std::vector<bool>> faces = faces_named(*file, choice.cage_objects, "--cage-object");
   if (!faces) {
     return in_file(path, faces.error());
   }
-  return part_of(*mesh, *faces).mesh;
+  return part_of(file->mesh(), *faces).mesh;
 }
 
 Result<ModelAndCage> load_model_and_cage(const std::string& model, const std::string& cage,
@@ -186,8 +223,8 @@ Result<ModelAndCage> load_model_and_cage(const std::string& model, const std::st
     return meshes;
   }
   Result<std::vector<bool>> faces =
-      choice.only.empty() ? faces_named(meshes.model(), choice.cage_objects, "--cage-object")
-                          : faces_named(meshes.model(), choice.only, "--only");
+      choice.only.empty() ? faces_named(meshes.file, choice.cage_objects, "--cage-object")
+                          : faces_named(meshes.file, choice.only, "--only");
   if (!faces) {
     return in_file(model, faces.error());
   }

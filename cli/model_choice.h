@@ -31,12 +31,13 @@ void add_only_option(CLI::App& command, ModelChoice& choice, const std::string& 
 /// Declares --cage-object.
 void add_cage_object_option(CLI::App& command, ModelChoice& choice);
 
-/// Whether each of the F faces belongs to an object or group of the names. A name stands for all
-/// that have it, NAME#2 for the second of them in the order of the file, unless one is called so.
+/// Whether each of the F faces of the file belongs to an object or group of the names. A name
+/// stands for all that have it, NAME#2 for the second of them in the order of the file, unless one
+/// is called so. In OBJ an object may have groups: its name stands for all of them.
 ///
 /// \param option  for the message: "--only"
 /// Errors: invalid_option (nothing has such a name; the message lists those there are).
-Result<std::vector<bool>> faces_named(const PolygonMesh& mesh, std::span<const std::string> names,
+Result<std::vector<bool>> faces_named(const ModelFile& file, std::span<const std::string> names,
                                       const std::string& option);
 
 /// A part of a mesh, with the vertices that its faces use.

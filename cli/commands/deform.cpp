@@ -3,7 +3,6 @@
 #include "session.h"
 
 #include "deform/apply.h"
-#include "io/linked_files.h"
 #include "io/source.h"
 #include <cagewright/deform/match_pose.h>
 #include <cagewright/deform/normals.h>
@@ -233,21 +232,13 @@ std::string summary(std::span<const Vec3> rest, std::span<const Vec3> positions,
                      moved, rest.size(), 100 * farthest / diagonal(rest));
 }
 
-/// Says which files beside the model the written ones refer to in vain.
+/// Once for each folder of a sequence.
 void warn_of_links(const ModelFile& model, const std::vector<Pose>& poses) {
   std::set<fs::path> told;
   for (const Pose& pose : poses) {
-    const fs::path folder = fs::path(pose.output).parent_path();
-    if (!model.keeps_format(pose.output) || !told.insert(folder).second) {
-      continue;
-    }
-    for (const fs::path& link : linked_files(model.path())) {
-      if (!fs::exists(folder / link)) {
-        fmt::print(
-            stderr,
-            "cagewright: warning: {} refers to {}, which is not beside it; copy it from {}\n",
-            pose.output, link.string(), fs::absolute(model.path()).parent_path().string());
-      }
+    if (model.keeps_format(pose.output) &&
+        told.insert(fs::path(pose.output).parent_path()).second) {
+      cli::warn_of_links(model, pose.output);
     }
   }
 }
@@ -273,7 +264,7 @@ int run(const Options& options, const Session& session) {
   const ModelFile& file = meshes->file;
   for (const Pose& pose : *poses) {
     const Status writable =
-        file.keeps_format(pose.output) ? success() : can_write_mesh(pose.output);
+        file.keeps_format(pose.output) ? success() : can_write_model(pose.output);
     if (!writable) {
       return fail(writable.error());
     }

@@ -96,7 +96,7 @@ PolygonMesh merge(const PolygonMesh& mesh, bool cut_faces) {
 }
 
 int run(const Options& options, const Session& session) {
-  if (const Status writable = can_write_mesh(options.output, {options.input, options.fit});
+  if (const Status writable = can_write_cage(options.output, {options.input, options.fit});
       !writable) {
     return fail(writable.error());
   }

@@ -55,7 +55,7 @@ PolygonMesh voxel_objects(const BoxDecomposition& boxes) {
 Status write_outputs(const GenerateArguments& arguments, const PolygonMesh& mesh,
                      const nlohmann::json& description) {
   const std::optional<MeshFormat> format = format_of_name(arguments.output);
-  assert(format); // run_generate() has asked can_write_mesh()
+  assert(format); // run_generate() has asked can_write_cage()
   const Result<std::string> bytes = format_mesh(mesh, *format);
   if (!bytes) {
     return in_file(arguments.output, bytes.error());
@@ -116,7 +116,7 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
 
 int run_generate(const GenerateArguments& arguments, const Session& session) {
   std::fputs(without_effect(arguments).c_str(), stderr);
-  if (const Status writable = can_write_mesh(arguments.output, {arguments.model}); !writable) {
+  if (const Status writable = can_write_cage(arguments.output, {arguments.model}); !writable) {
     return fail(writable.error());
   }
   if (!arguments.json.empty()) {

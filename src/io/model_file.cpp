@@ -1,6 +1,5 @@
 #include <cagewright/io/model_file.h>
 
-#include "io/gltf_dress.h"
 #include "io/read_file.h"
 #include "io/readers.h"
 #include "io/utf16.h"
@@ -109,16 +108,6 @@ Result<MeshAttributes> ModelFile::read_attributes() const {
       read_as(format_, {name_, bytes_->view()}, folder_of(path_, on_disk_), reading);
   if (!mesh) {
     return mesh.error();
-  }
-  if (format_ == MeshFormat::gltf) {
-    list_gltf_dress({name_, bytes_->view()}, attributes);
-    Result<FileNormals> normals = this->normals();
-    if (normals) {
-      attributes.normals = std::move(normals->normals);
-      attributes.normal_of_corner = std::move(normals->of_corner);
-    } else { // the shape does not need them
-      attributes.others.emplace_back("normals, which are damaged");
-    }
   }
   return attributes;
 }

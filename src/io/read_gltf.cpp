@@ -1,3 +1,4 @@
+#include "io/gltf_attributes.h"
 #include "io/gltf_nodes.h"
 #include "io/gltf_pose.h"
 #include "io/gltf_scene.h"
@@ -400,6 +401,9 @@ Result<PolygonMesh> read_gltf(const Source& source,
   Result<GltfScene> scene = read_gltf_scene(*document, reading.pose);
   if (scene) {
     reading.notes = std::move(scene->notes);
+  }
+  if (scene && reading.attributes != nullptr) {
+    *reading.attributes = read_gltf_attributes(*document, *scene);
   }
   return scene ? Result<PolygonMesh>(std::move(scene->mesh)) : scene.error();
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 namespace cagewright {
@@ -105,8 +106,8 @@ private:
     return success();
   }
 
-  // Calls use() for each row, with the row's values in values_of_row_ (0 for a list) and the list
-  // of the given property in list_.
+  // Calls use() for each row, with the row's values in values_of_row_ (0 for a list), the list of
+  // the given property in list_, and that of texture_list_ in texture_of_row_.
   template <class Use>
   Status read_rows(const PlyElement& element, std::optional<std::size_t> list, Use use) {
     values_of_row_.assign(element.properties.size(), 0);
@@ -122,7 +123,9 @@ private:
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
         const PlyProperty& property = element.properties[i];
         if (property.count_type) {
-          const Status status = read_list(element, property, list == i ? &list_ : nullptr);
+          std::vector<double>* kept = list == i ? &list_ : nullptr;
+          kept = list && texture_list_ == i ? &texture_of_row_ : kept;
+          const Status status = read_list(element, property, kept);
           if (!status) {
             return status;
           }
@@ -287,7 +290,21 @@ private:
     }
   }
 
+  // Strips have no faces of their own that values could belong to.
+  void name_strip_values(const PlyElement& element, std::size_t corners) {
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      if (i != corners) {
+        attributes_->others.push_back("the values " + in_quotes(element.properties[i].name) +
+                                      " of strips");
+      }
+    }
+  }
+
   void plan_face_values(const PlyElement& element, std::size_t corners) {
+    if (const auto texture = element.find("texcoord");
+        texture && texture != corners && element.properties[*texture].count_type) {
+      texture_list_ = texture;
+    }
     const auto red = find_channel(element, "red");
     const auto green = find_channel(element, "green");
     const auto blue = find_channel(element, "blue");
@@ -297,6 +314,9 @@ private:
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
       const bool is_color = face_color_ && std::ranges::find(*face_color_, i) != face_color_->end();
+      if (i == texture_list_) {
+        continue;
+      }
       if (property.count_type && i != corners) {
         attributes_->others.push_back("the lists " + in_quotes(property.name) + " of faces");
       } else if (i != corners && !is_color && property.name != "alpha") {
@@ -320,7 +340,42 @@ private:
     }
   }
 
+  // Texture points of a face's corners, two numbers for each: all of them, or the corner has none.
+  void keep_texture_of_corners(std::span<const std::size_t> items) {
+    std::vector<Index>& of_corner = attributes_->texture_of_corner;
+    of_corner.resize(mesh_.corners().size() - items.size(), MeshAttributes::none); // strips'
+    const bool fits = texture_of_row_.size() == 2 * list_.size();
+    for (const std::size_t item : items) {
+      of_corner.push_back(fits ? static_cast<Index>(attributes_->texture_points.size())
+                               : MeshAttributes::none);
+      if (fits) {
+        attributes_->texture_points.push_back(
+            {texture_of_row_[2 * item], texture_of_row_[2 * item + 1]});
+      }
+    }
+  }
+
+  // Values of faces where others, of strips, have none are of no use to a mesh.
+  void drop_values_of_some_faces() {
+    if (!attributes_->texture_of_corner.empty()) {
+      attributes_->texture_of_corner.resize(mesh_.corners().size(), MeshAttributes::none);
+    }
+    if (!attributes_->face_colors.empty() &&
+        attributes_->face_colors.size() != mesh_.face_count()) {
+      attributes_->face_colors.clear();
+      attributes_->others.emplace_back("face colours");
+    }
+    std::erase_if(attributes_->face_values, [&](const NamedValues& values) {
+      const bool is_short = values.values.size() != mesh_.face_count();
+      if (is_short) {
+        attributes_->others.push_back("the values " + in_quotes(values.name) + " of faces");
+      }
+      return is_short;
+    });
+  }
+
   void finish_attributes() {
+    drop_values_of_some_faces();
     for (const std::string_view comment : header_.comments) {
       attributes_->comments.emplace_back(comment);
     }
@@ -330,7 +385,7 @@ private:
         corner = attributes_->normals[corner].allFinite() ? corner : MeshAttributes::none;
       }
     }
-    if (texture_) {
+    if (texture_ && attributes_->texture_of_corner.empty()) {
       attributes_->texture_of_corner.assign(mesh_.corners().begin(), mesh_.corners().end());
     }
   }
@@ -348,9 +403,12 @@ private:
                            " has no list 'vertex_indices'" + std::string(export_again));
     }
     if (attributes_ != nullptr) {
-      plan_face_values(element, *corners);
+      element.name == "face" ? plan_face_values(element, *corners)
+                             : name_strip_values(element, *corners);
     }
-    return read_rows(element, corners, use);
+    const Status status = read_rows(element, corners, use);
+    texture_list_.reset(); // of this element
+    return status;
   }
 
   // Under whatever name: a face with one list of integers has its corners there.
@@ -369,27 +427,33 @@ private:
   }
 
   Status add_face(const PlyElement& element) {
-    corners_.clear();
+    items_.clear();
     for (const double value : list_) {
       if (!is_vertex(value)) {
         return no_vertex(value);
       }
-      corners_.push_back(static_cast<Index>(value));
+      items_.push_back(items_.size());
     }
     const auto place = [&] { return values_.place(); };
-    if (corners_.size() < 3) {
+    if (items_.size() < 3) {
       reading_.notes.add("short_face", place,
                          "face " + std::to_string(row_) + " has " +
-                             counted(corners_.size(), "corner") +
-                             ", is no surface and is left out");
+                             counted(items_.size(), "corner") + ", is no surface and is left out");
       return success();
     }
-    if (drop_repeated_corners(corners_, [](Index vertex) { return vertex; })) {
+    if (drop_repeated_corners(items_, [&](std::size_t i) { return list_[i]; })) {
       reading_.notes.add("repeated_corner", place, repeated_corner_note);
+    }
+    corners_.clear();
+    for (const std::size_t item : items_) {
+      corners_.push_back(static_cast<Index>(list_[item]));
     }
     mesh_.add_face(corners_);
     if (attributes_ != nullptr) {
       keep_face_values(element);
+    }
+    if (texture_list_) {
+      keep_texture_of_corners(items_);
     }
     return success();
   }
@@ -448,9 +512,12 @@ private:
   std::size_t row_ = 0;
   std::vector<double> values_of_row_;
   std::vector<double> list_;
+  std::vector<double> texture_of_row_;
+  std::vector<std::size_t> items_; // of list_ that are corners of the face under way
   std::vector<Index> corners_;
   std::optional<std::array<std::size_t, 3>> normal_; // properties, as the next
   std::optional<std::array<std::size_t, 2>> texture_;
+  std::optional<std::size_t> texture_list_; // of the faces, one point for each corner
   std::optional<std::array<std::size_t, 3>> face_color_;
   std::vector<std::size_t> kept_;         // as vertex_values
   std::vector<std::size_t> kept_of_face_; // as face_values

@@ -2,10 +2,13 @@
 
 #include "io/atomic_file.h"
 #include "io/binary.h"
+#include "io/glb.h"
 #include "io/gltf_json_text.h"
 #include "io/gltf_scene.h"
 #include "io/number_text.h"
 #include "io/uri.h"
+#include "io/write_gltf.h"
+#include <cagewright/io/mesh_format.h>
 
 #include <algorithm>
 #include <array>
@@ -743,19 +746,6 @@ private:
   Status space_ = success(); // unless the file becomes too long
 };
 
-void append_size(std::string& bytes, std::size_t size) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    bytes.push_back(static_cast<char>((size >> (8 * i)) & 0xffU));
-  }
-}
-
-void append_chunk(std::string& bytes, std::string_view type, std::string_view content,
-                  char padding) {
-  const std::size_t size = (content.size() + 3) / 4 * 4;
-  append_size(bytes, size);
-  bytes.append(type).append(content).append(size - content.size(), padding);
-}
-
 /// The file with another JSON and, in GLB, another binary chunk.
 std::string assemble(const GltfDocument& document, std::string json,
                      std::optional<std::string_view> binary) {
@@ -771,20 +761,20 @@ std::string assemble(const GltfDocument& document, std::string json,
     json.erase(json.find_last_not_of(" \t\r\n") + 1);
   }
   std::string result("glTF");
-  append_size(result, 2);
-  append_size(result, 0);
+  append_glb_size(result, 2);
+  append_glb_size(result, 0);
   for (const GltfDocument::Chunk& chunk : document.chunks()) {
     if (chunk.content.data() + chunk.content.size() ==
         document.json_text().data() + document.json_text().size()) {
-      append_chunk(result, chunk.type, json, ' ');
+      append_glb_chunk(result, chunk.type, json, ' ');
     } else if (binary && chunk.content.data() == document.binary_chunk().data()) {
-      append_chunk(result, chunk.type, *binary, '\0');
+      append_glb_chunk(result, chunk.type, *binary, '\0');
     } else {
-      append_chunk(result, chunk.type, chunk.content, '\0');
+      append_glb_chunk(result, chunk.type, chunk.content, '\0');
     }
   }
   std::string length;
-  append_size(length, result.size());
+  append_glb_size(length, result.size());
   return result.replace(8, 4, length);
 }
 
@@ -850,8 +840,9 @@ Status check_result(GltfDocument& document, const GltfScene& before,
 using BufferFiles = std::map<std::size_t, std::filesystem::path>;
 
 /// Gives the buffers that have changed, or that move to another folder, other URIs.
+/// \param embeds  all of them hold their data, in no other file
 Result<BufferFiles> place_buffers(GltfDocument& document, Editor& editor,
-                                  const std::filesystem::path& out) {
+                                  const std::filesystem::path& out, bool embeds) {
   const Json& buffers = member(document.json(), "buffers");
   const bool moves_away = !same_folder(document.folder()->native(), out.parent_path());
   std::vector<std::filesystem::path> taken;
@@ -860,7 +851,7 @@ Result<BufferFiles> place_buffers(GltfDocument& document, Editor& editor,
       taken.push_back(*file);
     }
   }
-  const bool uses_files = !taken.empty();
+  const bool uses_files = !taken.empty() && !embeds;
   BufferFiles files;
   const auto uri_of_new_file = [&](std::size_t buffer) {
     files[buffer] = free_name(out, taken);
@@ -869,14 +860,15 @@ Result<BufferFiles> place_buffers(GltfDocument& document, Editor& editor,
   };
   for (std::size_t b = 0; b < buffers.size(); ++b) {
     const bool is_file = document.file_of_buffer(b).has_value();
-    if ((!editor.changed.contains(b) && !(is_file && moves_away)) || document.is_binary_chunk(b)) {
+    const bool stays = !editor.changed.contains(b) && !(is_file && (moves_away || embeds));
+    if (stays || document.is_binary_chunk(b)) {
       continue;
     }
     const Result<std::string_view> bytes = document.bytes_of_buffer(b);
     if (!bytes) {
       return bytes.error();
     }
-    const Json uri = is_file ? uri_of_new_file(b) : Json(data_uri(*bytes));
+    const Json uri = is_file && !embeds ? uri_of_new_file(b) : Json(data_uri(*bytes));
     editor.json().replace("buffers", b, "uri", uri.dump());
   }
   if (editor.added_buffer) {
@@ -885,6 +877,35 @@ Result<BufferFiles> place_buffers(GltfDocument& document, Editor& editor,
     editor.json().append("buffers", Json{{"uri", uri}, {"byteLength", bytes.size()}}.dump());
   }
   return files;
+}
+
+/// The document as JSON alone, with the binary chunk in it.
+Result<std::string> as_json(GltfDocument& document) {
+  Json json = document.json();
+  if (!document.binary_chunk().empty() && document.is_binary_chunk(0)) {
+    const Result<std::string_view> bytes = document.bytes_of_buffer(0);
+    if (!bytes) {
+      return bytes.error();
+    }
+    json["buffers"][0]["uri"] = data_uri(*bytes);
+  }
+  return json.dump(1) + '\n';
+}
+
+/// The document as GLB, with its first buffer as the binary chunk.
+Result<std::string> as_glb(GltfDocument& document) {
+  Json json = document.json();
+  std::string_view binary;
+  if (element(member(json, "buffers"), 0).is_object()) {
+    const Result<std::string_view> bytes = document.bytes_of_buffer(0);
+    if (!bytes) {
+      return bytes.error();
+    }
+    binary = *bytes;
+    json["buffers"][0].erase("uri");
+  }
+  Result<std::string> bytes = glb_of(json.dump(), binary);
+  return bytes ? std::move(bytes) : document.source().error(bytes.error().message);
 }
 
 Status write_all(GltfDocument& document, std::string json, const BufferFiles& files,
@@ -916,7 +937,11 @@ Result<FileNormals> read_gltf_normals(const Source& source,
   if (!scene) {
     return scene.error();
   }
-  Result<GltfNormals> normals = normals_of(*document, *scene);
+  return read_gltf_normals(*document, *scene);
+}
+
+Result<FileNormals> read_gltf_normals(GltfDocument& document, const GltfScene& scene) {
+  Result<GltfNormals> normals = normals_of(document, scene);
   return normals ? Result<FileNormals>(std::move(normals->file)) : normals.error();
 }
 
@@ -924,12 +949,8 @@ Status rewrite_gltf(const Source& source, const std::filesystem::path& folder, P
                     std::span<const Vec3> positions, std::span<const Vec3> normals,
                     const std::filesystem::path& out) {
   const bool is_glb = source.bytes.starts_with("glTF");
-  const std::string extension = out.extension().string();
-  if ((is_glb && extension == ".gltf") || (!is_glb && extension == ".glb")) {
-    return source.error(is_glb ? "is GLB, and stays so; name the output .glb"
-                               : "is glTF as JSON, and stays so; name the output .gltf",
-                        ErrorCode::unsupported);
-  }
+  const bool changes_container =
+      format_of_name(out) == MeshFormat::gltf && is_glb == is_gltf_json_name(out);
   Result<GltfDocument> document = GltfDocument::open(source, folder);
   if (!document) {
     return document.error();
@@ -966,7 +987,7 @@ Status rewrite_gltf(const Source& source, const std::filesystem::path& folder, P
   if (Status status = editor.carry_out(); !status) {
     return status;
   }
-  const Result<BufferFiles> files = place_buffers(*document, editor, out);
+  const Result<BufferFiles> files = place_buffers(*document, editor, out, changes_container);
   if (!files) {
     return files.error();
   }
@@ -976,6 +997,10 @@ Status rewrite_gltf(const Source& source, const std::filesystem::path& folder, P
   }
   if (Status status = check_result(*document, *scene, positions, pose); !status) {
     return status;
+  }
+  if (changes_container) {
+    const Result<std::string> bytes = is_glb ? as_json(*document) : as_glb(*document);
+    return bytes ? write_file_atomically(out, *bytes) : bytes.error();
   }
   return write_all(*document, json, *files, out);
 }

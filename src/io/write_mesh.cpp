@@ -3,6 +3,7 @@
 #include "io/atomic_file.h"
 #include "io/number_text.h"
 #include "io/source.h"
+#include "io/write_gltf.h"
 #include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
@@ -432,7 +433,8 @@ std::vector<std::string> lost_in(MeshFormat format, const PolygonMesh& mesh,
   const bool obj = format == MeshFormat::obj;
   const bool ply = format == MeshFormat::ply;
   const bool off = format == MeshFormat::off;
-  const VertexDress dress = obj ? VertexDress() : vertex_dress(mesh, attributes);
+  const bool gltf = format == MeshFormat::gltf;
+  const VertexDress dress = ply || off ? vertex_dress(mesh, attributes) : VertexDress();
   const bool alpha = std::ranges::any_of(mesh.colors, [](const auto& c) { return c[3] != 1; });
   std::vector<std::string> lost;
   const auto lose = [&](bool has, bool kept, const std::string& what) {
@@ -440,14 +442,17 @@ std::vector<std::string> lost_in(MeshFormat format, const PolygonMesh& mesh,
       lost.push_back(what);
     }
   };
-  lose(!attributes.texture_of_corner.empty(), obj || ply || (off && !dress.texture.empty()),
+  lose(mesh.corners().size() > 3 * mesh.face_count(), obj || ply || off,
+       "faces of more than three corners (cut into triangles)");
+  lose(!attributes.texture_of_corner.empty(), obj || ply || gltf || (off && !dress.texture.empty()),
        "texture coordinates");
-  lose(!attributes.normal_of_corner.empty(), obj || ((ply || off) && !dress.normals.empty()),
+  lose(!attributes.normal_of_corner.empty(), obj || gltf || !dress.normals.empty(),
        ply || off ? "normals of hard edges" : "normals");
-  lose(!attributes.face_materials.empty(), obj, "materials");
-  lose(!mesh.face_groups.empty(), obj, "groups");
-  lose(!mesh.colors.empty(), obj || ply || off, "vertex colours");
-  lose(alpha, ply || off || !obj, "the alpha of colours");
+  lose(!attributes.face_materials.empty(), obj || gltf, "materials");
+  lose(!attributes.material_files.empty(), obj || !gltf, "colours of materials");
+  lose(!mesh.face_groups.empty(), obj || gltf, "groups");
+  lose(!mesh.colors.empty(), obj || ply || off || gltf, "vertex colours");
+  lose(alpha, !obj, "the alpha of colours");
   lose(!attributes.face_colors.empty(), ply || off, "face colours");
   for (const NamedValues& values : attributes.vertex_values) {
     lose(true, ply, "the values " + in_quotes(values.name) + " of vertices");
@@ -457,10 +462,6 @@ std::vector<std::string> lost_in(MeshFormat format, const PolygonMesh& mesh,
   }
   lost.insert(lost.end(), attributes.others.begin(), attributes.others.end());
   return lost;
-}
-
-Error not_writable() {
-  return {ErrorCode::unsupported, "glTF cannot be written; use .obj, .ply, .off or .stl"};
 }
 
 } // namespace
@@ -484,10 +485,13 @@ Result<FormattedMesh> format_mesh(const PolygonMesh& mesh, const MeshAttributes&
   case MeshFormat::ply:
     return FormattedMesh{PlyWriter(mesh, attributes, options.ascii_ply).write(),
                          lost_in(format, mesh, attributes)};
-  case MeshFormat::gltf:
-    break;
+  case MeshFormat::gltf: {
+    Result<std::string> bytes = format_gltf(mesh, attributes, options.gltf_json);
+    return bytes ? Result<FormattedMesh>({std::move(*bytes), lost_in(format, mesh, attributes)})
+                 : bytes.error();
   }
-  return not_writable();
+  }
+  return Error{ErrorCode::unsupported, "no such format"}; // not reached
 }
 
 Result<std::string> format_mesh(const PolygonMesh& mesh, MeshFormat format,
@@ -503,10 +507,13 @@ Result<std::vector<FileNote>> write_mesh(const PolygonMesh& mesh, const MeshAttr
   const std::optional<MeshFormat> format = format_of_name(path);
   if (!format) {
     return Error{ErrorCode::unsupported,
-                 name + ": the extension names no format that can be written; use .obj, .ply, .off "
-                        "or .stl"};
+                 name +
+                     ": the extension names no format that can be written; use .obj, .ply, .off, "
+                     ".stl, .glb or .gltf"};
   }
-  const Result<FormattedMesh> formatted = format_mesh(mesh, attributes, *format, options);
+  WriteOptions chosen = options;
+  chosen.gltf_json = is_gltf_json_name(path);
+  const Result<FormattedMesh> formatted = format_mesh(mesh, attributes, *format, chosen);
   if (!formatted) {
     return Error{formatted.error().code, name + ": " + formatted.error().message};
   }

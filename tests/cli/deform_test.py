@@ -197,7 +197,7 @@ class Deform(InAFolder):
 
     def test_refuses_formats_it_cannot_write_before_the_work(self):
         self.assert_refused(run("deform", self.model, self.rest, self.pose, "-o", self.folder / "x.fbx"),
-                            BAD_INPUT, ".obj, .ply, .stl or .off")
+                            BAD_INPUT, ".stl, .off, .glb or .gltf")
 
     def test_moves_one_group_only(self):
         done = run("deform", self.model, self.rest, self.pose, "-o", self.out, "--only", "small")

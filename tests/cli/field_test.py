@@ -66,7 +66,9 @@ READERS = [
       "file": {"out/x.ply": ["texcoord", "property double nx", "red"]}}),
     ("F97", f"deform F75_attributes.ply {POSE} -o out/x.obj",
      {**MOVED, "err": ["'quality'", "'label'"], "file": {"out/x.obj": ["\nvt ", "\nvn ", "/1"]}}),
-    ("F97", f"deform F15_interleaved.glb {POSE} -o out/x.obj", {**MOVED, "file": {"out/x.obj": ["\nvn "]}}),
+    ("F97", f"deform F15_interleaved.glb {POSE} -o out/x.obj", {**MOVED, "file": {"out/x.obj": ["\nvn ", "\nvt "]}}),
+    ("F102", f"deform F82_dressed.obj {POSE} -o out/x.glb", MOVED),
+    ("F102", f"deform F15_interleaved.glb {POSE} -o out/x.gltf", {**MOVED, "not_err": ["warning"]}),
 ]
 
 # glTF.

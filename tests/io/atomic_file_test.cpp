@@ -99,7 +99,8 @@ TEST(WriteFileAtomically, PassesByWhatAKilledProgramLeft) {
 
 TEST(WriteFilesAtomically, WritesAllOrNone) {
   const TemporaryFolder folder;
-  const std::vector<NamedBytes> files = {{folder / "a.obj", "mesh"}, {folder / "none/a.json", "{}"}};
+  const std::vector<NamedBytes> files = {{folder / "a.obj", "mesh"},
+                                         {folder / "none/a.json", "{}"}};
   EXPECT_FALSE(write_files_atomically(files));
   EXPECT_EQ(folder.names(), Names{});
   const std::vector<NamedBytes> full = {{folder / "a.obj", "mesh"}, {"/dev/full", "{}"}};

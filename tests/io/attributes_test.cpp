@@ -117,6 +117,47 @@ TEST(Attributes, OfHardEdgesAndSeamsAreNamedOrGoToCorners) {
   EXPECT_EQ(to_off.lost[0], "texture coordinates");
 }
 
+TEST(Attributes, OfCornersComeBackFromPly) {
+  const ModelFile seam = parse(obj + "f 4/1/1 3/2/2 1/4/2\n", MeshFormat::obj);
+  const std::string written = formatted(seam, MeshFormat::ply).bytes;
+  const MeshAttributes back = *parse(written, MeshFormat::ply).attributes();
+  const MeshAttributes all = *seam.attributes();
+  ASSERT_EQ(back.texture_of_corner.size(), all.texture_of_corner.size());
+  for (std::size_t c = 0; c < all.texture_of_corner.size(); ++c) {
+    EXPECT_EQ(back.texture_points[back.texture_of_corner[c]],
+              all.texture_points[all.texture_of_corner[c]]);
+  }
+  EXPECT_TRUE(back.others.empty());
+}
+
+TEST(Attributes, OfCornersThatAreNamedTwiceGoWithThem) {
+  const MeshAttributes all =
+      *parse("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+             "property float z\nelement face 2\nproperty list uchar float texcoord\nproperty list "
+             "uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+             "10 0 0 1 0 .5 .5 1 1 0 1 5 0 1 1 2 3\n4 0 0 1 1 3 0 1 2\n",
+             MeshFormat::ply)
+           .attributes();
+  ASSERT_EQ(all.texture_of_corner.size(), 7U);
+  EXPECT_EQ(all.texture_points[all.texture_of_corner[2]], (std::array<double, 2>{1, 1}));
+  EXPECT_EQ(all.texture_of_corner[4], MeshAttributes::none); // two points for three corners
+}
+
+TEST(Attributes, OfStripsAreNamed) {
+  const ModelFile file = parse(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 1\nproperty list uchar int vertex_indices\nproperty int label\nproperty "
+      "uchar red\nproperty uchar green\nproperty uchar blue\nelement tristrips 1\nproperty list "
+      "uchar int vertex_indices\nproperty float weight\nend_header\n"
+      "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 7 1 2 3\n4 0 1 2 3 0.5\n",
+      MeshFormat::ply);
+  EXPECT_EQ(file.mesh().face_count(), 3U);
+  EXPECT_EQ(file.attributes()->others, (Words{"the values 'weight' of strips", "face colours",
+                                              "the values 'label' of faces"}));
+  const std::string written = formatted(file, MeshFormat::ply).bytes; // and no value is missed
+  EXPECT_EQ(parse(written, MeshFormat::ply).mesh().face_count(), 3U);
+}
+
 TEST(Attributes, FollowAMoveIntoAnotherFormatWithTheNormalsGiven) {
   const ModelFile file = parse(ply, MeshFormat::ply);
   const TemporaryFolder folder;

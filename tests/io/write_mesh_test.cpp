@@ -153,11 +153,12 @@ TEST(WriteMesh, KeepsFacesOfMoreCornersThanAByteCanCount) {
 TEST(WriteMesh, RefusesFormatsItDoesNotWrite) {
   const TemporaryFolder folder;
   const PolygonMesh mesh(make_cube());
-  for (const char* name : {"a.glb", "a.gltf", "a.fbx", "a"}) {
+  for (const char* name : {"a.fbx", "a"}) {
     const Status status = write_mesh(mesh, folder / name);
     ASSERT_FALSE(status);
     EXPECT_EQ(status.error().code, ErrorCode::unsupported);
-    EXPECT_NE(status.error().message.find("use .obj, .ply, .off or .stl"), std::string::npos);
+    EXPECT_NE(status.error().message.find("use .obj, .ply, .off, .stl, .glb or .gltf"),
+              std::string::npos);
   }
   EXPECT_TRUE(folder.names().empty());
 }
