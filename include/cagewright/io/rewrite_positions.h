@@ -45,10 +45,10 @@ Result<FileNormals> read_normals(const std::filesystem::path& path, Pose pose = 
 /// chunk (or in a new buffer); nodes that show one mesh and are to show several shapes get copies
 /// of it, which share all that is not changed. A copy of the vertices compressed by Draco is left
 /// out where they change.
-/// Where `out` is named .gltf and the file is GLB, or the other way round, the container changes and
-/// holds all buffers; else a buffer in a file of its own is written beside `out`, under its name with .bin,
-/// never over a file that the original refers to, and the URI changed; the one in the original
-/// stays. Links to images stay as they are.
+/// Where `out` is named .gltf and the file is GLB, or the other way round, the container changes
+/// and holds all buffers; else a buffer in a file of its own is written beside `out`, under its
+/// name with .bin, never over a file that the original refers to, and the URI changed; the one in
+/// the original stays. Links to images stay as they are.
 ///
 /// In OBJ a normal whose vertices have turned apart becomes several, one after the other, and the
 /// faces refer to them; where none has, the faces stay as they are.
