@@ -68,7 +68,7 @@ void warn(std::string_view message);
 // One function for each command, in cli/commands/<name>.cpp: it declares the options and what to
 // run. The order is that of --help.
 #define CAGEWRIGHT_COMMANDS(X)                                                                     \
-  X(generate)                                                                                      \
+  X(generate) X(batch)                                                                             \
   X(check) X(compare) X(info) X(bind) X(deform) X(convert) X(weld)                                 \
   CAGEWRIGHT_RENDER_COMMAND(X) X(view)
 #define CAGEWRIGHT_DECLARE(name) void add_##name(CLI::App& app, Session& session);
