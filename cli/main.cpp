@@ -171,14 +171,15 @@ int run_command_line(Session& session, CLI::App& app, int argc, char** argv) {
     tell_in_json(session, json_of_failure("misuse", e.what(), {}), bad_input);
     return bad_input;
   }
+  const Limits limits = session.limits.is_for_each ? Limits{.seconds = 0} : session.limits;
   const Deadline deadline(
-      session.limits.seconds,
+      limits.seconds,
       [&session] {
         session.out_of_time = true;
         session.stop.request_stop();
       },
       [] { ::_exit(fail(Error::cancelled())); });
-  limit_memory(session.limits.bytes);
+  limit_memory(limits.bytes);
   const int exit_code = run(session);
   if (exit_code != done && session.first_failure) {
     tell_in_json(session,

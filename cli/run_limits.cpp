@@ -135,6 +135,7 @@ void add_limit_options(CLI::App& app, Limits& limits) {
            if (const std::string wrong = parse_bytes(text, limits.bytes); !wrong.empty()) {
              throw CLI::ValidationError("--memory-limit", wrong);
            }
+           limits.is_memory_given = true;
          },
          "Stop with exit code 4 rather than use more memory: 4G, 500M, 50%; 0: no limit")
       ->option_text("BYTES=80%");

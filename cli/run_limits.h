@@ -16,8 +16,10 @@
 namespace cagewright::cli {
 
 struct Limits {
-  double seconds = 3600;   ///< 0: none
-  std::uint64_t bytes = 0; ///< 0: none; add_limit_options() puts the default here
+  double seconds = 3600;        ///< 0: none
+  std::uint64_t bytes = 0;      ///< 0: none; add_limit_options() puts the default here
+  bool is_memory_given = false; ///< on the command line
+  bool is_for_each = false;     ///< of the models of a batch: they do not hold for this process
 };
 
 /// Declares --time-limit and --memory-limit, for all commands.

@@ -27,6 +27,7 @@ struct GenerateArguments {
   std::string density; ///< a file, or "colors"; empty: even
   GenerateOptions options;
   std::vector<const CageOption*> given; ///< options on the command line
+  std::vector<std::string> words;       ///< the same as they stand there: "--max-gap=2%"
 };
 
 /// Declares all options of the library's table, under their names, in their groups.

@@ -36,6 +36,7 @@ void add_cage_options(CLI::App& command, GenerateArguments& arguments) {
         throw CLI::ValidationError(dashed(option), status.error().message);
       }
       arguments.given.push_back(&option);
+      arguments.words.push_back(dashed(option) + (is_flag(option) ? "" : "=" + text));
     };
     CLI::Option* added = nullptr;
     if (is_flag(option)) {
