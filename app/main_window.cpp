@@ -36,6 +36,7 @@
 #include <QSettings>
 #include <QSlider>
 #include <QStatusBar>
+#include <QStyle>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -58,6 +59,9 @@ QDockWidget* dock(QMainWindow* window, const char* name, const QString& title, Q
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    // Never so narrow that something is cut.
+    scroll->setMinimumWidth(content->minimumSizeHint().width() +
+                            window->style()->pixelMetric(QStyle::PM_ScrollBarExtent) + 2);
     made->setWidget(scroll);
   } else {
     made->setWidget(content);
