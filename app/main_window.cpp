@@ -36,6 +36,7 @@
 #include <QSettings>
 #include <QSlider>
 #include <QStatusBar>
+#include <QStyle>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -58,6 +59,9 @@ QDockWidget* dock(QMainWindow* window, const char* name, const QString& title, Q
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    // Never so narrow that something is cut.
+    scroll->setMinimumWidth(content->minimumSizeHint().width() +
+                            window->style()->pixelMetric(QStyle::PM_ScrollBarExtent) + 2);
     made->setWidget(scroll);
   } else {
     made->setWidget(content);
@@ -85,6 +89,9 @@ void share_height(QDockWidget* first, int first_height, QDockWidget* second, int
   take_turns(first, second);
   take_turns(second, first);
 }
+
+// On screens that are lower, in logical pixels, three panels one above the other are too many.
+constexpr int low_screen = 800;
 
 QString file_of(const QDropEvent& event) {
   const QList<QUrl> urls = event.mimeData()->urls();
@@ -175,7 +182,8 @@ void MainWindow::make_panels() {
   auto* figures = new FiguresPanel(session_.document());
   connect(figures, &FiguresPanel::violationChosen, this, &MainWindow::show_violation);
   auto* selection = new SelectionPanel(session_.editor());
-  dock(this, "dock_generate", tr("Make a Cage"), generate_, Qt::LeftDockWidgetArea, false);
+  QDockWidget* generate_dock =
+      dock(this, "dock_generate", tr("Make a Cage"), generate_, Qt::LeftDockWidgetArea, false);
   QDockWidget* figures_dock =
       dock(this, "dock_figures", tr("Figures"), figures, Qt::RightDockWidgetArea, true);
   QDockWidget* select =
@@ -201,6 +209,11 @@ void MainWindow::make_panels() {
   share_height(line_dock_, 110, sections_dock_, 280);
   fold_panels();
   resizeDocks({figures_dock, select, layers}, {212, 172, 340}, Qt::Vertical);
+  resizeDocks({generate_dock, figures_dock}, {240, 260}, Qt::Horizontal);
+  if (screen()->availableSize().height() < low_screen) {
+    tabifyDockWidget(history, select);
+    layers->raise();
+  }
   connect(generate_, &GeneratePanel::loadCageRequested, this, &MainWindow::choose_cage);
   connect(guide_, &GuideBar::openRequested, this, &MainWindow::choose_model);
   connect(guide_, &GuideBar::exportRequested, this, &MainWindow::export_model);
@@ -293,6 +306,7 @@ void MainWindow::connect_session() {
   connect(&document, &Document::modelChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::cageChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::modeChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::selectionChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::posesChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::timeLineChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::pinsChanged, this, &MainWindow::update_actions);
@@ -316,6 +330,11 @@ void MainWindow::update_actions() {
   mode_->setText(!document.has_cage()              ? QString()
                  : document.mode() == Mode::refine ? tr("Refine")
                                                    : tr("Deform"));
+  const CageAction mode =
+      document.selection().mode == SelectionMode::vertex ? CageAction::vertex_mode
+      : document.selection().mode == SelectionMode::edge ? CageAction::edge_mode
+                                                         : CageAction::face_mode;
+  findChild<QAction*>(command_name(mode))->setChecked(true);
   const bool empty = !document.has_model() && !document.has_cage();
   if (empty && !welcome_->isVisible()) {
     welcome_->set_recent(recent_files());

@@ -73,6 +73,16 @@ void MainWindow::make_menus() {
     tools_->insertAction(first_tool, findChild<QAction*>(command));
   }
   tools_->insertSeparator(first_tool);
+  auto* modes = new QActionGroup(this);
+  for (const CageAction mode :
+       {CageAction::vertex_mode, CageAction::edge_mode, CageAction::face_mode}) {
+    auto* action = findChild<QAction*>(command_name(mode));
+    action->setIcon(icon(command_name(mode)));
+    action->setCheckable(true);
+    modes->addAction(action);
+    tools_->insertAction(first_tool, action);
+  }
+  tools_->insertSeparator(first_tool);
 }
 
 void MainWindow::apply_key_map(KeyMap map) {

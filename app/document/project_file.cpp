@@ -57,7 +57,7 @@ template <class Visit> void visit(Layers& l, const Visit& field) {
   field("model", l.model, no_range);
   field("smooth_normals", l.smooth_normals, no_range);
   field("wireframe", l.wireframe, no_range);
-  field("look", l.look, Range{0, static_cast<double>(SurfaceLook::stripes)});
+  field("look", l.look, Range{0, static_cast<double>(SurfaceLook::own)});
   field("occlusion", l.occlusion, no_range);
   field("cage_edges", l.cage_edges, no_range);
   field("cage_faces", l.cage_faces, no_range);

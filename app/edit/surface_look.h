@@ -10,6 +10,7 @@ enum class SurfaceLook {
   wax,     ///< light comes through
   metal,   ///< mirrors a sky: bumps show
   stripes, ///< mirrors stripes: kinks of the surface break them
+  own,     ///< the colors of its file, by soft lights; plain where it has none
 };
 
 } // namespace cagewright::app

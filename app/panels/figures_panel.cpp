@@ -17,6 +17,26 @@ QString plural(const char* one, const char* many, std::size_t count) {
   return count == 1 ? QObject::tr(one) : QObject::tr(many).arg(count);
 }
 
+/// From where on a figure is good, and from where on it will do.
+struct Levels {
+  double good;
+  double fair;
+};
+
+/// The figure with a word that says whether it is good; larger values are better.
+QString with_cue(const QString& figure, double value, const Levels& levels) {
+  const bool good = value >= levels.good;
+  const bool fair = value >= levels.fair;
+  return QString("%1 <span style='color:%2'>%3</span>")
+      .arg(figure,
+           good   ? "#1f9d3a"
+           : fair ? "#c08a00"
+                  : "#d62a2a",
+           good   ? QObject::tr("good")
+           : fair ? QObject::tr("fair")
+                  : QObject::tr("poor"));
+}
+
 } // namespace
 
 QString describe(ViolationKind kind, std::size_t count) {
@@ -92,11 +112,17 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
   };
   add("vertices", tr("Vertices"), tr("Of the cage"));
   add("faces", tr("Faces"), tr("Of the cage: polygons, and triangles when they are cut"));
-  add("volume_ratio", tr("Volume ratio"), tr("Volume of the cage divided by that of the model"));
-  add("gap", tr("Least gap"), tr("Least distance between cage and model, of the diagonal"));
-  add("mean_gap", tr("Mean gap"), tr("Mean distance from the cage to the model, of the diagonal"));
+  add("volume_ratio", tr("Volume ratio"),
+      tr("Volume of the cage divided by that of the model. Up to 2 the cage follows its form"));
+  add("gap", tr("Least gap"),
+      tr("Least distance between cage and model, of the diagonal. From 0.1 % on every program can "
+         "bind the model"));
+  add("mean_gap", tr("Mean gap"),
+      tr("Mean distance from the cage to the model, of the diagonal. Up to 3 % the model moves "
+         "where the cage does"));
   add("quality", tr("Face quality"),
-      tr("Of the worst face: 1 for an equilateral triangle, 0 for one without area"));
+      tr("Of the worst face: 1 for an equilateral triangle, 0 for one without area. Below 0.05 "
+         "faces are needles that are hard to grasp"));
   add("model", tr("Model"), tr("Vertices and triangles of the model"));
   problems_ = new QListWidget;
   problems_->setObjectName("problems");
@@ -157,11 +183,15 @@ void FiguresPanel::update_figures() {
                    ? count(triangles)
                    : tr("%1 (%2 triangles)").arg(count(cage.face_count()), count(triangles)));
   if (const auto& metrics = document_.metrics()) {
-    set("volume_ratio",
-        metrics->volume_ratio > 0 ? locale.toString(metrics->volume_ratio, 'f', 3) : "-");
-    set("gap", percent(metrics->clearance, 3));
-    set("mean_gap", percent(metrics->mean_distance, 2));
-    set("quality", locale.toString(metrics->min_quality, 'f', 3));
+    set("volume_ratio", metrics->volume_ratio > 0
+                            ? with_cue(locale.toString(metrics->volume_ratio, 'f', 3),
+                                       -metrics->volume_ratio, {-2, -3.5})
+                            : "-");
+    set("gap", with_cue(percent(metrics->clearance, 3), metrics->clearance, {1e-3, 2e-4}));
+    set("mean_gap",
+        with_cue(percent(metrics->mean_distance, 2), -metrics->mean_distance, {-0.03, -0.06}));
+    set("quality", with_cue(locale.toString(metrics->min_quality, 'f', 3), metrics->min_quality,
+                            {0.05, 0.01}));
   }
 }
 

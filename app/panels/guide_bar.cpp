@@ -61,9 +61,7 @@ void GuideBar::update_step() {
   };
   button_->setEnabled(!session_.jobs().busy());
   if (!document.has_model()) {
-    say(tr("<b>Step 1 of 5.</b> Open a model: OBJ, PLY, STL, OFF or glTF. You can also drop a "
-           "file onto the window."),
-        tr("Open..."));
+    say(tr("<b>Step 1 of 5.</b> Open a model: OBJ, PLY, STL, OFF or glTF."), tr("Open..."));
   } else if (!document.has_cage()) {
     say(tr("<b>Step 2 of 5.</b> Make a cage: a coarse shell round the model, by which you will "
            "move it."),

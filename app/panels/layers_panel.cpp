@@ -129,7 +129,8 @@ void LayersPanel::add_looks(QVBoxLayout* layout) {
   look_ = new QComboBox;
   look_->setObjectName("look");
   // In the order of SurfaceLook.
-  look_->addItems({tr("Plain"), tr("Clay"), tr("Wax"), tr("Metal"), tr("Stripes")});
+  look_->addItems(
+      {tr("Plain"), tr("Clay"), tr("Wax"), tr("Metal"), tr("Stripes"), tr("Its own colors")});
   look_->setToolTip(tr("What the model is made of, as it were. Metal and stripes show bumps and "
                        "kinks that a deformation makes"));
   row->addWidget(look_, 1);

@@ -133,8 +133,9 @@ TimeLinePanel::TimeLinePanel(Editor& editor, QWidget* parent)
     auto* made = new QToolButton;
     made->setObjectName(name);
     made->setText(text);
-    made->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-    made->setToolTip(help);
+    made->setToolButtonStyle(Qt::ToolButtonIconOnly); // panels beside it need the room
+    made->setToolTip(QString("<b>%1</b><br>%2").arg(text, help));
+    made->setAccessibleName(text);
     row->addWidget(made);
     return made;
   };
@@ -159,7 +160,8 @@ TimeLinePanel::TimeLinePanel(Editor& editor, QWidget* parent)
   frame_ = number(new QSpinBox, "frame", tr("Frame"), tr("The frame that is shown"));
   first_ = number(new QSpinBox, "first_frame", tr("from"), tr("First frame"));
   last_ = number(new QSpinBox, "last_frame", tr("to"), tr("Last frame"));
-  rate_ = number(new QDoubleSpinBox, "rate", tr("Frames per second"), tr("Speed of playing"));
+  rate_ =
+      number(new QDoubleSpinBox, "rate", tr("fps"), tr("Frames per second: the speed of playing"));
   first_->setRange(TimeLine::least_frame, TimeLine::most_frame - 1);
   last_->setRange(TimeLine::least_frame + 1, TimeLine::most_frame);
   rate_->setRange(1, 240);

@@ -93,9 +93,13 @@ WelcomePage::WelcomePage(QWidget* parent) : QScrollArea(parent) {
   recent_ = new QVBoxLayout;
   recent_->setSpacing(1);
   layout->addLayout(recent_);
-  auto* help = heading(tr("<a href='help'>First steps</a>"), 1.0, false);
-  layout->addWidget(help);
-  connect(help, &QLabel::linkActivated, this, &WelcomePage::helpRequested);
+  auto* help = new QToolButton;
+  help->setObjectName("welcome_help");
+  help->setText(tr("First Steps..."));
+  help->setAutoRaise(true);
+  help->setFocusPolicy(Qt::TabFocus);
+  layout->addWidget(help, 0, Qt::AlignCenter);
+  connect(help, &QToolButton::clicked, this, &WelcomePage::helpRequested);
   layout->addStretch(3);
   setWidget(page);
 }

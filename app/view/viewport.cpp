@@ -86,7 +86,8 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
     const Layers& layers = document_.layers();
     dirty_.voxels = dirty_.voxels || layers.feature_voxels != layers_before_.feature_voxels ||
                     layers.inner_voxels != layers_before_.inner_voxels;
-    dirty_.colors = dirty_.colors || layers.weights != layers_before_.weights;
+    dirty_.colors = dirty_.colors || layers.weights != layers_before_.weights ||
+                    layers.look != layers_before_.look;
     layers_before_ = layers;
     update();
   });
@@ -328,6 +329,12 @@ void Viewport::upload() {
       colors.resize(density->size());
       parallel_for(0, colors.size(), 4096,
                    [&](std::size_t i) { colors[i] = density_color((*density)[i], colors_.model); });
+    } else if (document_.layers().look == SurfaceLook::own && document_.has_model() &&
+               !document_.model()->mesh.colors.empty() &&
+               !(document_.layers().weights && !weights.empty())) {
+      for (const auto& c : document_.model()->mesh.colors) {
+        colors.push_back(color_of(Rgb{c[0], c[1], c[2]}));
+      }
     } else if (document_.layers().weights && weights.size() == document_.model_positions().size()) {
       colors.resize(weights.size());
       parallel_for(0, colors.size(), 4096,

@@ -12,6 +12,7 @@
 #include <QSlider>
 #include <QToolButton>
 #include <QTreeWidget>
+#include <QWheelEvent>
 
 #include <fstream>
 #include <map>
@@ -215,7 +216,12 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
       Qt::Key_Home,   Qt::Key_K,      Qt::Key_Space,       Qt::Key_Delete,
       Qt::Key_Left,   Qt::Key_C,      Qt::Key_BracketLeft, Qt::Key_BracketRight,
       Qt::Key_O,      Qt::Key_B,      Qt::Key_L,           Qt::Key_M,
-      Qt::Key_Tab};
+      Qt::Key_Tab,    Qt::Key_H,      Qt::Key_Slash,       Qt::Key_W,
+      Qt::Key_Q};
+  const std::vector<Qt::KeyboardModifiers> modifiers = {
+      Qt::NoModifier, Qt::NoModifier, Qt::ShiftModifier, Qt::ControlModifier, Qt::AltModifier};
+  const std::vector<Qt::MouseButton> mouse_buttons = {
+      Qt::LeftButton, Qt::LeftButton, Qt::LeftButton, Qt::MiddleButton, Qt::RightButton};
   // Not those that open dialogs.
   QList<QAction*> actions;
   for (QAction* action : window->findChildren<QAction*>()) {
@@ -241,18 +247,36 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
                    static_cast<int>(pick(static_cast<std::size_t>(view().height()))));
     const QPoint b(static_cast<int>(pick(static_cast<std::size_t>(view().width()))),
                    static_cast<int>(pick(static_cast<std::size_t>(view().height()))));
-    switch (pick(8)) {
+    switch (pick(10)) {
     case 0:
     case 1:
-      drag(a, b);
+      drag(a, b, modifiers[pick(modifiers.size())], mouse_buttons[pick(mouse_buttons.size())]);
       break;
+    case 8: {
+      QWheelEvent wheel(a, view().mapToGlobal(a), {}, QPoint(0, pick(2) == 0 ? 120 : -120),
+                        Qt::NoButton, modifiers[pick(modifiers.size())], Qt::NoScrollPhase, false);
+      QCoreApplication::sendEvent(&view(), &wheel);
+      break;
+    }
+    case 9: {
+      const QList<QSlider*> sliders = window->findChildren<QSlider*>();
+      QSlider* slider =
+          sliders[static_cast<qsizetype>(pick(static_cast<std::size_t>(sliders.size())))];
+      if (slider->isVisible() && slider->isEnabled()) {
+        QTest::mouseClick(slider, Qt::LeftButton, {},
+                          QPoint(static_cast<int>(pick(static_cast<std::size_t>(slider->width()))),
+                                 slider->height() / 2));
+      }
+      break;
+    }
     case 2:
       QTest::mouseClick(&view(), Qt::LeftButton, pick(2) == 0 ? Qt::NoModifier : Qt::ShiftModifier,
                         a);
       break;
     case 3:
     case 4:
-      QTest::keyClick(&view(), keys[pick(keys.size())]);
+      QTest::keyClick(&view(), keys[pick(keys.size())],
+                      pick(6) == 0 ? Qt::AltModifier : Qt::NoModifier);
       break;
     case 5:
       press(pick(3) == 0 ? Qt::Key_Y : Qt::Key_Z, Qt::ControlModifier);
