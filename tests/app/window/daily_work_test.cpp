@@ -261,22 +261,6 @@ TEST_F(DailyWork, AsksBeforeItBindsACageThatIsNone) {
   EXPECT_TRUE(box->text().contains("outside")) << box->text().toStdString();
   answer(box, "bind_anyway");
   ASSERT_TRUE(wait_until([this] { return document().mode() == Mode::deform; }));
-  session().refine();
-
-  PolygonMesh other_unit = beside; // in centimetres, z up, and elsewhere
-  for (Vec3& p : other_unit.positions) {
-    p = 100 * Vec3(p.x(), -p.z(), p.y());
-  }
-  load_cage(other_unit);
-  click("bind");
-  wait_for_job();
-  box = question("binding_question");
-  EXPECT_TRUE(box->text().contains("turned by")) << box->text().toStdString();
-  keep("binding-question");
-  answer(box, "fit_cage");
-  ASSERT_TRUE(wait_until([this] { return document().mode() == Mode::deform; }));
-  EXPECT_LT(greatest_distance(document().cage_rest().positions, good.positions),
-            0.1 * document().diagonal());
 }
 
 TEST_F(DailyWork, ExtrudesInOneStepThatEscapeTakesBackWhole) {
