@@ -1,8 +1,8 @@
 #include "improve/guard.h"
 
-#include "core/maths.h"
 #include "exact/predicates.h"
 #include "mesh/disjoint_sets.h"
+#include "mesh/solid_angle.h"
 #include <cagewright/mesh/measures.h>
 
 #include <algorithm>
@@ -340,15 +340,7 @@ bool faces_cross(const Triangle& s, const Corners& at_s, const Triangle& t, cons
 }
 
 double solid_angle(const Vec3& p, const Corners& t) {
-  // Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.
-  const Vec3 a = t[0] - p;
-  const Vec3 b = t[1] - p;
-  const Vec3 c = t[2] - p;
-  const double la = a.norm();
-  const double lb = b.norm();
-  const double lc = c.norm();
-  return 2 * maths::atan2(a.dot(b.cross(c)),
-                          la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  return solid_angle(p, t[0], t[1], t[2]);
 }
 
 double solid_angle(const CageMesh& cage, const Vec3& p, const Corners& t) {

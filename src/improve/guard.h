@@ -88,8 +88,7 @@ Corners corners_after(const CageMesh& cage, const Patch& patch, const Triangle& 
 /// are not shared must differ in index, shared ones agree in position.
 bool faces_cross(const Triangle& s, const Corners& at_s, const Triangle& t, const Corners& at_t);
 
-/// Solid angle under which p sees the triangle, signed: the sum over a closed surface is 4 pi
-/// inside and 0 outside.
+/// See mesh/solid_angle.h.
 double solid_angle(const Vec3& p, const Corners& t);
 
 /// The same for a face of the cage, together with its mirror image if the cage is a half.

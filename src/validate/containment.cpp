@@ -1,8 +1,8 @@
 #include "validate/containment.h"
 
-#include "core/maths.h"
 #include "core/random.h"
 #include "exact/predicates.h"
+#include "mesh/solid_angle.h"
 #include <cagewright/mesh/measures.h>
 
 #include <algorithm>
@@ -149,21 +149,14 @@ std::optional<Containment::Crossings> Containment::crossings(const Vec3& p, cons
 }
 
 double Containment::solid_angle(const Vec3& p, unsigned cutting) const {
-  // Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.
   double sum = 0;
   for (std::size_t i = 0; i < cage_.parts.size(); ++i) {
     const CagePart& part = cage_.parts[i];
     if ((part.cuttings >> cutting & 1U) == 0) {
       continue;
     }
-    const Vec3 a = cage_.point(part, 0) - p;
-    const Vec3 b = cage_.point(part, 1) - p;
-    const Vec3 c = cage_.point(part, 2) - p;
-    const double la = a.norm();
-    const double lb = b.norm();
-    const double lc = c.norm();
-    const double divisor = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    sum += weights_[i] * 2 * maths::atan2(a.dot(b.cross(c)), divisor);
+    sum += weights_[i] * cagewright::solid_angle(p, cage_.point(part, 0), cage_.point(part, 1),
+                                                 cage_.point(part, 2));
   }
   return sum;
 }

@@ -2,6 +2,8 @@
 
 #include "core/maths.h"
 #include "core/parallel.h"
+#include "mesh/solid_angle.h"
+#include "spatial/distance.h"
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
 
@@ -9,6 +11,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -16,10 +19,22 @@
 namespace cagewright {
 namespace {
 
-constexpr std::size_t most_points = 300;
-constexpr double fits = 0.95;       // share of the model's vertices inside a cage that fits
-constexpr double about_fits = 0.4;  // inside one that is meant to be where it is
-constexpr double far_too_large = 3; // times the model's diagonal
+constexpr std::size_t most_points = 300; // for finding a fit
+constexpr std::size_t most_angles =
+    4'000'000;                       // vertices times faces of the cage, for the place of a fit
+constexpr double fits = 0.95;        // share of the model's vertices inside a cage that fits
+constexpr double about_fits = 0.4;   // inside one that is meant to be where it is
+constexpr double much_smaller = 0.8; // a unit that fits this much tighter is the right one
+constexpr double far_too_large = 3;  // times the model's diagonal
+
+/// What stands off more on one side than on the other has its model not in the middle of its box:
+/// the place of a tight cage is found from there, in at most so many steps, each of which goes
+/// beyond what it must by this share of the cage's diagonal. It ends after so many steps without a
+/// gain.
+constexpr int most_steps = 40;
+constexpr int most_idle_steps = 8;
+constexpr double step_beyond = 0.001;
+constexpr double nearly = 0.5; // share of the vertices inside from which a search begins
 
 /// A cage is as large as its model or up to so many times larger, along each axis, and by so much
 /// of the model's diagonal: flat models have thick cages.
@@ -39,7 +54,7 @@ constexpr std::array<NamedScale, 7> units = {{{10, "another unit"},
                                               {1 / 0.3048, "feet against metres"}}};
 
 struct NamedTurn {
-  Mat3 turn;
+  Mat3 turn = Mat3::Identity();
   std::string name; // empty: none
 };
 
@@ -57,7 +72,9 @@ Mat3 quarter_turns(int axis, int quarters) {
   return turn;
 }
 
-/// The likeliest first: y up against z up, then other axes.
+constexpr std::size_t up_axis_turns = 3; // none, and y up against z up
+
+/// The likeliest first: up_axis_turns, then other axes.
 std::vector<NamedTurn> turns() {
   std::vector<NamedTurn> list = {
       {Mat3::Identity(), ""},
@@ -89,14 +106,7 @@ std::string short_number(double value) {
 bool winds_round(TriangleView cage, const Vec3& p) {
   double sum = 0;
   for (const Triangle& t : cage.triangles) {
-    const Vec3 a = cage.positions[t[0]] - p;
-    const Vec3 b = cage.positions[t[1]] - p;
-    const Vec3 c = cage.positions[t[2]] - p;
-    const double la = a.norm();
-    const double lb = b.norm();
-    const double lc = c.norm();
-    sum += 2 * maths::atan2(a.dot(b.cross(c)),
-                            la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    sum += solid_angle(p, cage.positions[t[0]], cage.positions[t[1]], cage.positions[t[2]]);
   }
   return std::abs(sum) >= 2 * std::numbers::pi;
 }
@@ -115,10 +125,10 @@ public:
         points.push_back(model.positions[v]);
       }
     }
-    const std::size_t count = std::min(points.size(), most_points);
-    for (std::size_t i = 0; i < count; ++i) {
-      points_.push_back(points[i * points.size() / count]);
-    }
+    points_ = spread(points, most_points);
+    many_points_ =
+        spread(points, std::max(most_points,
+                                most_angles / std::max<std::size_t>(1, cage.triangles.size())));
   }
 
   [[nodiscard]] bool has_sizes() const {
@@ -129,13 +139,22 @@ public:
     return cage_box_.sizes().norm() / model_box_.sizes().norm();
   }
 
-  /// The simplest first.
+  /// The simplest; one that has more of the model inside, or makes the cage much smaller, goes
+  /// before.
   [[nodiscard]] std::optional<CageFit> find() const {
-    const CageFit as_it_is;
-    if (share_inside(as_it_is) >= about_fits && relative_size() < far_too_large) {
+    // What is about where it should be keeps its size, is turned for another upward axis only, and
+    // changed only where all is right then.
+    const double share_now = share_inside(CageFit());
+    const bool is_about_there = share_now >= about_fits && relative_size() < far_too_large;
+    if (is_about_there && share_now >= fits) {
       return std::nullopt;
     }
-    const std::vector<NamedTurn> all = turns();
+    const double least = is_about_there ? 1 : fits;
+    std::vector<NamedTurn> all = turns();
+    if (is_about_there) {
+      all.resize(up_axis_turns);
+    }
+    CageFit best;
     // One change; two; all three.
     for (const auto& [scales, turned, shifted] :
          {std::array{true, false, false}, std::array{false, true, false},
@@ -143,28 +162,58 @@ public:
           std::array{true, false, true}, std::array{false, true, true},
           std::array{true, true, true}}) {
       for (std::size_t t = turned ? 1 : 0; t < (turned ? all.size() : 1); ++t) {
-        for (const NamedScale& scale : scales ? scales_for(all[t].turn) : none_) {
-          CageFit fit;
-          fit.turn = all[t].turn;
-          fit.scale = scale.factor;
-          if (shifted) {
-            fit.shift = model_box_.center() - fit.scale * (fit.turn * cage_box_.center());
-          }
-          if (!is_plausible(fit)) {
-            continue;
-          }
-          fit.inside = share_inside(fit);
-          if (fit.inside >= fits) {
-            describe(fit, all[t].name, scale);
-            return fit;
+        for (const NamedScale& scale :
+             scales && !is_about_there ? scales_for(all[t].turn) : none_) {
+          const CageFit fit = fit_by(all[t], scale, shifted);
+          if (fit.inside >= least && is_better(fit, best, scale)) {
+            best = shifted ? settled(fit, many_points_) : fit;
+            best.inside = fit.inside; // of the same vertices for all
+            describe(best, all[t].name, scale);
           }
         }
       }
     }
-    return std::nullopt;
+    return best.inside > 0 ? std::optional(best) : std::nullopt;
   }
 
 private:
+  /// \param best  has come before, and is the simpler one; inside is 0 if there is none
+  static bool is_better(const CageFit& fit, const CageFit& best, const NamedScale& scale) {
+    const bool needs_no_size = *scale.name != 0 || scale.factor == 1;
+    if (best.inside > 0 && !needs_no_size) {
+      return false;
+    }
+    return fit.inside > best.inside ||
+           (fit.inside == best.inside && fit.scale < much_smaller * best.scale);
+  }
+
+  /// `inside` is 0 where the sizes of the boxes speak against it.
+  [[nodiscard]] CageFit fit_by(const NamedTurn& turn, const NamedScale& scale, bool shifted) const {
+    CageFit fit;
+    fit.turn = turn.turn;
+    fit.scale = scale.factor;
+    if (shifted) {
+      fit.shift = model_box_.center() - fit.scale * (fit.turn * cage_box_.center());
+    }
+    if (!is_plausible(fit)) {
+      return fit;
+    }
+    fit.inside = share_inside(fit);
+    if (shifted && fit.inside >= nearly) {
+      fit = settled(fit, points_);
+    }
+    return fit;
+  }
+
+  static std::vector<Vec3> spread(const std::vector<Vec3>& points, std::size_t most) {
+    const std::size_t count = std::min(points.size(), most);
+    std::vector<Vec3> some;
+    for (std::size_t i = 0; i < count; ++i) {
+      some.push_back(points[i * points.size() / count]);
+    }
+    return some;
+  }
+
   [[nodiscard]] Vec3 turned_sizes(const Mat3& turn) const {
     return (turn * cage_box_.sizes()).cwiseAbs();
   }
@@ -213,19 +262,87 @@ private:
     return true;
   }
 
-  [[nodiscard]] double share_inside(const CageFit& fit) const {
-    const std::size_t inside = parallel_reduce_ordered(
-        0, points_.size(), 16, std::size_t{0},
+  /// The model's vertices in a cage that is changed: those inside, and for the others the normal
+  /// equations of the cage's shift, in its own coordinates, that takes each to its nearest face.
+  struct Lack {
+    std::size_t inside = 0;
+    Mat3 matrix = Mat3::Zero();
+    Vec3 moments = Vec3::Zero();
+  };
+
+  [[nodiscard]] bool is_inside(const Vec3& p) const {
+    return cage_box_.contains(p) && winds_round(cage_, p);
+  }
+
+  void add_lack(const Vec3& p, Lack& lack) const {
+    const double beyond = step_beyond * cage_box_.sizes().norm();
+    double distance = std::numeric_limits<double>::infinity();
+    Vec3 nearest = p;
+    for (const Triangle& t : cage_.triangles) {
+      const Vec3 q = nearest_on_triangle(p, cage_.positions[t[0]], cage_.positions[t[1]],
+                                         cage_.positions[t[2]]);
+      if ((p - q).norm() < distance) {
+        distance = (p - q).norm();
+        nearest = q;
+      }
+    }
+    if (distance > 0 && std::isfinite(distance)) {
+      const Vec3 outward = (p - nearest) / distance;
+      lack.matrix += outward * outward.transpose();
+      lack.moments += outward * (distance + beyond);
+    }
+  }
+
+  [[nodiscard]] Lack lack_of(const CageFit& fit, std::span<const Vec3> points,
+                             bool with_equations) const {
+    return parallel_reduce_ordered(
+        0, points.size(), 16, Lack{},
         [&](std::size_t first, std::size_t last) {
-          std::size_t count = 0;
+          Lack lack;
           for (std::size_t i = first; i < last; ++i) {
-            const Vec3 p = fit.turn.transpose() * (points_[i] - fit.shift) / fit.scale;
-            count += cage_box_.contains(p) && winds_round(cage_, p) ? 1 : 0;
+            const Vec3 p = fit.turn.transpose() * (points[i] - fit.shift) / fit.scale;
+            if (is_inside(p)) {
+              ++lack.inside;
+            } else if (with_equations) {
+              add_lack(p, lack);
+            }
           }
-          return count;
+          return lack;
         },
-        [](std::size_t& all, std::size_t part) { all += part; });
-    return static_cast<double>(inside) / static_cast<double>(points_.size());
+        [](Lack& all, const Lack& part) {
+          all.inside += part.inside;
+          all.matrix += part.matrix;
+          all.moments += part.moments;
+        });
+  }
+
+  static double share(const Lack& lack, std::span<const Vec3> points) {
+    return static_cast<double>(lack.inside) / static_cast<double>(points.size());
+  }
+  [[nodiscard]] double share_inside(const CageFit& fit) const {
+    return share(lack_of(fit, points_, false), points_);
+  }
+
+  /// The cage shifted from there to where most of the model is inside: point to plane registration
+  /// (Chen and Medioni 1992) of the vertices that are not.
+  [[nodiscard]] CageFit settled(CageFit fit, std::span<const Vec3> points) const {
+    fit.inside = 0;
+    CageFit best = fit;
+    int idle = 0;
+    for (int step = 0; step < most_steps && idle < most_idle_steps; ++step) {
+      const Lack lack = lack_of(fit, points, true);
+      fit.inside = share(lack, points);
+      idle = step == 0 || fit.inside > best.inside ? 0 : idle + 1;
+      if (fit.inside > best.inside) {
+        best = fit;
+      }
+      if (lack.inside == points.size()) {
+        break;
+      }
+      const Mat3 held = lack.matrix + 1e-3 * lack.matrix.trace() * Mat3::Identity(); // no far leaps
+      fit.shift += fit.scale * (fit.turn * held.ldlt().solve(lack.moments));
+    }
+    return best;
   }
 
   static void describe(CageFit& fit, const std::string& turn, const NamedScale& scale) {
@@ -250,6 +367,7 @@ private:
   Box3 cage_box_;
   Box3 model_box_;
   std::vector<Vec3> points_;
+  std::vector<Vec3> many_points_;
   std::vector<NamedScale> none_ = {{1, ""}};
 };
 

@@ -75,6 +75,32 @@ TEST(FitCage, FindsThemTogether) {
                 "shifted");
 }
 
+/// As tight as cages are made, and farther off on one side: its box is not about the model's
+/// middle.
+PolygonMesh lopsided_cage() {
+  PolygonMesh mesh{model()};
+  for (Vec3& p : mesh.positions) {
+    const double times = p.x() > 3 ? 1.3 : 1.04;
+    p = Vec3(3 + times * (p.x() - 3), 10 + 1.04 * (p.y() - 10), -1 + 1.1 * (p.z() + 1));
+  }
+  return mesh;
+}
+
+TEST(FitCage, FindsThePlaceOfATightCage) {
+  ASSERT_TRUE(validate_cage(lopsided_cage(), model())->valid());
+  for (const bool scaled : {false, true}) {
+    for (const bool turned : {false, true}) {
+      PolygonMesh wrong = lopsided_cage();
+      for (Vec3& p : wrong.positions) {
+        p += Vec3(-40, 7, 30);
+        p = turned ? Vec3(p.x(), -p.z(), p.y()) : p;
+        p *= scaled ? 100 : 1;
+      }
+      expect_mended(wrong, "shifted by ");
+    }
+  }
+}
+
 TEST(FitCage, SaysNothingOfAnotherCage) {
   // Round one half of the model only: no change as a whole mends that.
   const PolygonMesh half = changed(

@@ -36,7 +36,8 @@ struct CageFit {
 ///
 /// \param cage   need not be valid
 /// \param model  V vertices, T triangles
-/// Cost: O(V + F) and some hundred winding numbers for each change that the sizes allow.
+/// Cost: O(V + F) and some hundred winding numbers for each change that the sizes allow; some
+/// thousand for a shift.
 std::optional<CageFit> fit_cage(const PolygonMesh& cage, TriangleView model);
 
 /// The diagonal of the cage's box divided by that of the model's; 0 where one has none.

@@ -20,12 +20,6 @@ namespace {
 
 class Craft : public Window {
 protected:
-  void press(Qt::Key key, Qt::KeyboardModifiers modifiers = {}) {
-    activate();
-    QWidget* focus = window->focusWidget();
-    QTest::keyClick(focus != nullptr ? focus : window.get(), key, modifiers);
-    settle();
-  }
   void click_at(QPoint place, Qt::KeyboardModifiers modifiers = {}) {
     QTest::mouseClick(&view(), Qt::LeftButton, modifiers, place);
     settle();
@@ -83,32 +77,32 @@ TEST_F(Craft, HidesWhatIsInTheWayAndIsolates) {
   const Index front = front_vertex();
   click_vertex(front);
   ASSERT_EQ(document().selection().vertices, std::vector<Index>{front});
-  press(Qt::Key_H);
+  press_at_focus(Qt::Key_H);
   const std::size_t hidden = document().state().hidden_faces.size();
   EXPECT_GE(hidden, 3U);
   EXPECT_TRUE(document().selection().empty()) << "what is hidden is not selected";
   keep("hidden");
   click_vertex(front);
   EXPECT_NE(document().selection().vertices, std::vector<Index>{front}) << "it is out of reach";
-  press(Qt::Key_A);
+  press_at_focus(Qt::Key_A);
   EXPECT_EQ(document().selection().vertices.size(), cage().size() - 1);
-  press(Qt::Key_H, Qt::AltModifier);
+  press_at_focus(Qt::Key_H, Qt::AltModifier);
   EXPECT_TRUE(document().state().hidden_faces.empty());
 
-  press(Qt::Key_3);
-  press(Qt::Key_A, Qt::AltModifier);
+  press_at_focus(Qt::Key_3);
+  press_at_focus(Qt::Key_A, Qt::AltModifier);
   click_at(at(document().shown_cage_positions()[front]) + QPoint(25, 0));
   ASSERT_EQ(document().selection().faces.size(), 1U);
-  press(Qt::Key_Slash);
+  press_at_focus(Qt::Key_Slash);
   EXPECT_EQ(document().state().hidden_faces.size(), document().cage_rest().face_count() - 1);
-  press(Qt::Key_A);
+  press_at_focus(Qt::Key_A);
   EXPECT_EQ(document().selection().faces.size(), 1U);
-  press(Qt::Key_Slash);
+  press_at_focus(Qt::Key_Slash);
   EXPECT_TRUE(document().state().hidden_faces.empty());
   // Steps of undo like others, and gone with the cage they are of.
-  press(Qt::Key_Z, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
   EXPECT_FALSE(document().state().hidden_faces.empty());
-  press(Qt::Key_U, Qt::ControlModifier); // no command: nothing happens
+  press_at_focus(Qt::Key_U, Qt::ControlModifier); // no command: nothing happens
   session().editor().replace_cage(document().state().rest, nullptr, "Again");
   EXPECT_TRUE(document().state().hidden_faces.empty());
 }
@@ -129,26 +123,26 @@ TEST_F(Craft, HasTheKeysAndButtonsOfOtherPrograms) {
   EXPECT_GT((view().camera().target() - target).norm(), 1e-6);
   EXPECT_EQ(QApplication::activePopupWidget(), nullptr) << "a drag asks for no menu";
   // Letters.
-  press(Qt::Key_E);
+  press_at_focus(Qt::Key_E);
   EXPECT_EQ(document().tools().tool, Tool::rotate);
-  press(Qt::Key_R);
+  press_at_focus(Qt::Key_R);
   EXPECT_EQ(document().tools().tool, Tool::scale);
-  press(Qt::Key_Q);
+  press_at_focus(Qt::Key_Q);
   EXPECT_EQ(document().tools().tool, Tool::select_box);
-  press(Qt::Key_W);
+  press_at_focus(Qt::Key_W);
   EXPECT_EQ(document().tools().tool, Tool::translate);
   EXPECT_FALSE(view().transforming());
-  press(Qt::Key_A);
+  press_at_focus(Qt::Key_A);
   EXPECT_TRUE(document().selection().empty()) << "A frames, it does not select";
-  press(Qt::Key_F11);
+  press_at_focus(Qt::Key_F11);
   EXPECT_EQ(document().selection().mode, SelectionMode::face);
-  press(Qt::Key_A, Qt::ControlModifier);
+  press_at_focus(Qt::Key_A, Qt::ControlModifier);
   EXPECT_EQ(document().selection().faces.size(), document().cage_rest().face_count());
-  press(Qt::Key_A, Qt::AltModifier);
-  press(Qt::Key_S);
+  press_at_focus(Qt::Key_A, Qt::AltModifier);
+  press_at_focus(Qt::Key_S);
   EXPECT_FALSE(view().transforming()) << "S is no scaling here";
   bind();
-  press(Qt::Key_S);
+  press_at_focus(Qt::Key_S);
   EXPECT_EQ(keys_of_time_line(), 1U);
 
   prefer("key_map", "three_button");
@@ -161,8 +155,8 @@ TEST_F(Craft, HasTheKeysAndButtonsOfOtherPrograms) {
   drag({200, 300}, {200, 240}, {}, Qt::RightButton);
   EXPECT_NE(view().camera().distance(), before);
   EXPECT_EQ(QApplication::activePopupWidget(), nullptr);
-  press(Qt::Key_1);
-  press(Qt::Key_B);
+  press_at_focus(Qt::Key_1);
+  press_at_focus(Qt::Key_B);
   drag({2, 70}, {view().width() - 3, view().height() - 3});
   EXPECT_FALSE(document().selection().empty()) << "B selects by a box";
 
@@ -174,8 +168,8 @@ TEST_F(Craft, HasTheKeysAndButtonsOfOtherPrograms) {
   before = view().camera().distance();
   wheel(120);
   EXPECT_GT(view().camera().distance(), before);
-  press(Qt::Key_3);
-  press(Qt::Key_E);
+  press_at_focus(Qt::Key_3);
+  press_at_focus(Qt::Key_E);
   EXPECT_EQ(document().tools().tool, Tool::translate) << "E is no tool here";
 }
 
@@ -223,11 +217,11 @@ TEST_F(Craft, FoldsTheTimeLineUntilThereIsSomethingOnIt) {
   open_caged();
   bind();
   EXPECT_TRUE(line->isHidden());
-  press(Qt::Key_K);
+  press_at_focus(Qt::Key_K);
   EXPECT_TRUE(line->isVisible());
   EXPECT_EQ(keys_of_time_line(), 1U);
   line->close();
-  press(Qt::Key_K, Qt::ControlModifier);
+  press_at_focus(Qt::Key_K, Qt::ControlModifier);
   EXPECT_TRUE(line->isHidden()) << "what the user closes stays closed";
   trigger("reset_panels");
   EXPECT_TRUE(line->isVisible());
@@ -241,7 +235,7 @@ TEST_F(Craft, MixesPosesAndKeysTheMix) {
   const auto make_pose = [&](const Vec3& by) {
     session().editor().reset_pose();
     session().editor().move({a}, std::vector<Vec3>{rest[a] + by}, "Move");
-    press(Qt::Key_K, Qt::ControlModifier);
+    press_at_focus(Qt::Key_K, Qt::ControlModifier);
   };
   make_pose({0.4, 0, 0});
   make_pose({0, 0.2, 0});
@@ -269,7 +263,7 @@ TEST_F(Craft, MixesPosesAndKeysTheMix) {
   show_time_line();
   find<QSpinBox>("frame")->setValue(1);
   document().set_time(std::nullopt);
-  press(Qt::Key_K);
+  press_at_focus(Qt::Key_K);
   find<QDoubleSpinBox>("share_number_0")->setValue(1);
   find<QDoubleSpinBox>("share_number_1")->setValue(1);
   EXPECT_TRUE(is_at({0.4, 0.2, 0}));
@@ -281,7 +275,7 @@ TEST_F(Craft, MixesPosesAndKeysTheMix) {
   // A mix goes on from what is seen there.
   find<QDoubleSpinBox>("share_number_1")->setValue(0);
   EXPECT_TRUE(is_at({0.4 * (share + 1) / 2, 0, 0}));
-  press(Qt::Key_Z, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
   EXPECT_NEAR(find<QDoubleSpinBox>("share_number_1")->value(), 0.25, 0.011)
       << "and comes back to it";
 }
@@ -310,7 +304,7 @@ TEST_F(Craft, DragsTheModelAndTheCageComesAlong) {
   drag(now, now + QPoint(0, 50));
   EXPECT_LT((document().place_of(document().state().pins[1]) - held).norm(), 1e-9) << "it holds";
   EXPECT_NE(cage(), pulled);
-  press(Qt::Key_Z, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
   EXPECT_EQ(cage(), pulled) << "one step";
   // Escape takes a drag back.
   QTest::mousePress(&view(), Qt::LeftButton, {}, now);
@@ -349,12 +343,12 @@ TEST_F(Craft, PaintsWhereTheNextCageIsFiner) {
   keep("painted");
   drag(place + QPoint(0, 60), place + QPoint(20, 60), Qt::ControlModifier);
   EXPECT_LT(*std::ranges::min_element(*document().state().density), -0.2F);
-  press(Qt::Key_Z, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
   EXPECT_EQ(*document().state().density, painted) << "a stroke is one step";
   drag(place, place + QPoint(40, 0), Qt::ShiftModifier);
   EXPECT_LT(*std::ranges::max_element(*document().state().density),
             *std::ranges::max_element(painted));
-  press(Qt::Key_Z, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
   const double radius = document().tools().brush_radius;
   QWheelEvent event(QPointF(300, 300), view().mapToGlobal(QPointF(300, 300)), {}, QPoint(0, 120),
                     Qt::NoButton, Qt::ControlModifier, Qt::NoScrollPhase, false);

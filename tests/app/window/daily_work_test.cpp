@@ -2,6 +2,7 @@
 #include "window_fixture.h"
 
 #include "app/panels/time_line_panel.h"
+#include <cagewright/mesh/measures.h>
 
 #include <QContextMenuEvent>
 #include <QCoreApplication>
@@ -22,13 +23,6 @@ namespace {
 
 class DailyWork : public Window {
 protected:
-  /// A key pressed wherever the focus is.
-  void press(Qt::Key key, Qt::KeyboardModifiers modifiers = {}) {
-    activate();
-    QWidget* focus = window->focusWidget();
-    QTest::keyClick(focus != nullptr ? focus : window.get(), key, modifiers);
-    settle();
-  }
   void click_frame(int frame) {
     if (find<QDockWidget>("dock_time_line")->isHidden()) {
       show_time_line();
@@ -100,17 +94,17 @@ TEST_F(DailyWork, SetsAKeyframeAtEachFrameThatIsClicked) {
   generate();
   bind();
   click_frame(1);
-  press(Qt::Key_K);
+  press_at_focus(Qt::Key_K);
   const std::vector<Vec3> rest = cage();
   click_frame(30);
   drag_vertex({50, 0});
   EXPECT_EQ(find<QSpinBox>("frame")->value(), 30) << "a drag does not move the frame";
   const std::vector<Vec3> second = cage();
-  press(Qt::Key_K);
+  press_at_focus(Qt::Key_K);
   click_frame(60);
   drag_vertex({0, 40});
   const std::vector<Vec3> third = cage();
-  press(Qt::Key_K);
+  press_at_focus(Qt::Key_K);
   ASSERT_EQ(key_frames(), (std::vector<int>{1, 30, 60}));
   const auto& keys = document().state().time_line.keys;
   EXPECT_EQ(*keys[0].positions, rest);
@@ -118,9 +112,9 @@ TEST_F(DailyWork, SetsAKeyframeAtEachFrameThatIsClicked) {
   EXPECT_EQ(*keys[2].positions, third);
 
   click_frame(1);
-  press(Qt::Key_Space);
+  press_at_focus(Qt::Key_Space);
   ASSERT_TRUE(wait_until([this] { return document().frame() > 32; }));
-  press(Qt::Key_Space);
+  press_at_focus(Qt::Key_Space);
   EXPECT_FALSE(find<TimeRuler>("time_ruler")->isHidden());
   click_frame(30);
   EXPECT_EQ(std::vector<Vec3>(document().shown_cage_positions().begin(),
@@ -129,7 +123,7 @@ TEST_F(DailyWork, SetsAKeyframeAtEachFrameThatIsClicked) {
 
   // Undo of a drag shows what was seen before it, at the same frame.
   drag_vertex({-30, 10});
-  press(Qt::Key_Z, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
   EXPECT_EQ(find<QSpinBox>("frame")->value(), 30);
   EXPECT_LT(greatest_distance(document().shown_cage_positions(), second), 1e-12);
 }
@@ -145,7 +139,7 @@ TEST_F(DailyWork, LettersWorkAfterAClickElsewhere) {
       document().set_time(5);
     }
     other->setFocus();
-    press(Qt::Key_K);
+    press_at_focus(Qt::Key_K);
     EXPECT_EQ(key_frames(), std::vector<int>{5}) << other->objectName().toStdString();
     session().editor().undo_stack().undo();
   }
@@ -166,20 +160,20 @@ TEST_F(DailyWork, LettersWorkAfterAClickElsewhere) {
 TEST_F(DailyWork, SwitchesBetweenRefiningAndDeformingByTab) {
   open_model();
   generate();
-  press(Qt::Key_Tab);
+  press_at_focus(Qt::Key_Tab);
   wait_for_job();
   ASSERT_EQ(document().mode(), Mode::deform);
   drag_vertex({40, 10});
   const std::vector<Vec3> posed = cage();
-  press(Qt::Key_Tab);
+  press_at_focus(Qt::Key_Tab);
   ASSERT_EQ(document().mode(), Mode::refine);
   ASSERT_EQ(document().state().poses.size(), 1U) << "what was not kept is kept";
   EXPECT_EQ(document().state().poses[0].name, "Last pose");
   EXPECT_EQ(*document().state().poses[0].positions, posed);
-  press(Qt::Key_Tab);
+  press_at_focus(Qt::Key_Tab);
   wait_for_job();
   session().editor().apply_pose(0);
-  press(Qt::Key_Tab);
+  press_at_focus(Qt::Key_Tab);
   EXPECT_EQ(document().state().poses.size(), 1U) << "a pose that is kept is not kept twice";
 }
 
@@ -261,12 +255,31 @@ TEST_F(DailyWork, AsksBeforeItBindsACageThatIsNone) {
   EXPECT_TRUE(box->text().contains("outside")) << box->text().toStdString();
   answer(box, "bind_anyway");
   ASSERT_TRUE(wait_until([this] { return document().mode() == Mode::deform; }));
+  session().refine();
+
+  PolygonMesh other_unit = beside; // in centimetres, z up, and elsewhere
+  for (Vec3& p : other_unit.positions) {
+    p = 100 * Vec3(p.x(), -p.z(), p.y());
+  }
+  load_cage(other_unit);
+  click("bind");
+  wait_for_job();
+  box = question("binding_question");
+  EXPECT_TRUE(box->text().contains("turned by")) << box->text().toStdString();
+  keep("binding-question");
+  answer(box, "fit_cage");
+  ASSERT_TRUE(wait_until([this] { return document().mode() == Mode::deform; }));
+  // A ring lies as well one way up as the other: it is where it was, as a whole.
+  EXPECT_LT((bounding_box(document().cage_rest().positions).center() -
+             bounding_box(good.positions).center())
+                .norm(),
+            0.1 * document().diagonal());
 }
 
 TEST_F(DailyWork, ExtrudesInOneStepThatEscapeTakesBackWhole) {
   open_model();
   generate();
-  press(Qt::Key_3);
+  press_at_focus(Qt::Key_3);
   const PolygonMesh before = document().cage();
   QTest::mouseClick(&view(), Qt::LeftButton, {}, at([&] {
     Vec3 sum = Vec3::Zero();
@@ -287,24 +300,24 @@ TEST_F(DailyWork, ExtrudesInOneStepThatEscapeTakesBackWhole) {
   ASSERT_EQ(document().selection().faces.size(), 1U);
   QUndoStack& stack = session().editor().undo_stack();
   const int steps = stack.count();
-  press(Qt::Key_E);
+  press_at_focus(Qt::Key_E);
   ASSERT_TRUE(view().transforming());
   EXPECT_GT(document().cage_rest().face_count(), before.face_count());
-  press(Qt::Key_Escape);
+  press_at_focus(Qt::Key_Escape);
   EXPECT_EQ(document().cage_rest().face_count(), before.face_count());
   EXPECT_EQ(cage(), before.positions);
   EXPECT_EQ(stack.count(), steps);
-  press(Qt::Key_E);
-  press(Qt::Key_Return);
+  press_at_focus(Qt::Key_E);
+  press_at_focus(Qt::Key_Return);
   EXPECT_GT(document().cage_rest().face_count(), before.face_count());
   EXPECT_EQ(stack.count(), steps + 1);
-  press(Qt::Key_Z, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
   EXPECT_EQ(document().cage_rest().face_count(), before.face_count());
 
   // Deleting a face alone would change nothing: it is refused, and says so.
   QString said;
   QObject::connect(&session(), &Session::message, [&](const QString& text) { said = text; });
-  press(Qt::Key_Delete);
+  press_at_focus(Qt::Key_Delete);
   EXPECT_EQ(document().cage_rest().face_count(), before.face_count());
   EXPECT_EQ(document().selection().mode, SelectionMode::face);
   EXPECT_TRUE(said.contains("closed")) << said.toStdString();
@@ -331,7 +344,7 @@ TEST_F(DailyWork, OpensAFileThatIsChosenWhileACageIsMade) {
   find<QSpinBox>("vertices")->setValue(200);
   click("generate");
   ASSERT_TRUE(session().jobs().busy());
-  with_file(path("second.obj"), [this] { press(Qt::Key_O, Qt::ControlModifier); });
+  with_file(path("second.obj"), [this] { press_at_focus(Qt::Key_O, Qt::ControlModifier); });
   ASSERT_TRUE(wait_until([this] {
     return !session().jobs().busy() && document().model()->path.filename() == "second.obj";
   }));
@@ -354,13 +367,13 @@ TEST_F(DailyWork, RecoversAProjectUnderItsOwnName) {
   EXPECT_EQ(cage(), edited);
   EXPECT_EQ(session().project_path(), path("work.cagewright").toStdString());
   EXPECT_TRUE(window->isWindowModified());
-  press(Qt::Key_S, Qt::ControlModifier);
+  press_at_focus(Qt::Key_S, Qt::ControlModifier);
   EXPECT_TRUE(wait_until([this] { return !window->isWindowModified(); }));
 }
 
 TEST_F(DailyWork, FindsAnyCommandByAPartOfItsName) {
   open_model();
-  press(Qt::Key_F3);
+  press_at_focus(Qt::Key_F3);
   QDialog* search = nullptr;
   ASSERT_TRUE(wait_until([&] {
     search = window->findChild<QDialog*>("command_search");
@@ -393,7 +406,7 @@ TEST_F(DailyWork, OffersWhatCanBeDoneUnderThePointer) {
   EXPECT_FALSE(menu->actions().contains(find<QAction>("keyframe")));
   menu->close();
   // The right button ends a drag, and no menu comes up.
-  press(Qt::Key_G);
+  press_at_focus(Qt::Key_G);
   QTest::mousePress(&view(), Qt::RightButton, {}, place);
   QCoreApplication::sendEvent(&view(), &event);
   QTest::mouseRelease(&view(), Qt::RightButton, {}, place);
@@ -405,11 +418,11 @@ TEST_F(DailyWork, GoesBackAlongTheHistory) {
   open_model();
   generate();
   const std::vector<Vec3> made = cage();
-  press(Qt::Key_1);
-  press(Qt::Key_A);
-  press(Qt::Key_A, Qt::AltModifier);
-  press(Qt::Key_A);
-  press(Qt::Key_A, Qt::AltModifier);
+  press_at_focus(Qt::Key_1);
+  press_at_focus(Qt::Key_A);
+  press_at_focus(Qt::Key_A, Qt::AltModifier);
+  press_at_focus(Qt::Key_A);
+  press_at_focus(Qt::Key_A, Qt::AltModifier);
   drag_vertex({30, 0});
   auto* list = find<QListWidget>("history");
   ASSERT_EQ(list->count(), 4) << "opened, generated, selected, moved";
@@ -427,19 +440,19 @@ TEST_F(DailyWork, GoesBackAlongTheHistory) {
 TEST_F(DailyWork, ShowsTheViewAloneAndWhatWasRefused) {
   open_model();
   generate();
-  press(Qt::Key_Space, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Space, Qt::ControlModifier);
   EXPECT_FALSE(find<QDockWidget>("dock_figures")->isVisible());
   keep("full-view");
-  press(Qt::Key_Space, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Space, Qt::ControlModifier);
   EXPECT_TRUE(find<QDockWidget>("dock_figures")->isVisible());
   const Layers before = document().layers();
-  press(Qt::Key_Z);
+  press_at_focus(Qt::Key_Z);
   EXPECT_TRUE(document().layers().wireframe);
-  press(Qt::Key_Z);
+  press_at_focus(Qt::Key_Z);
   EXPECT_FALSE(document().layers().smooth_normals);
-  press(Qt::Key_Z);
+  press_at_focus(Qt::Key_Z);
   EXPECT_EQ(document().layers(), before);
-  press(Qt::Key_Delete); // nothing is selected
+  press_at_focus(Qt::Key_Delete); // nothing is selected
   EXPECT_TRUE(find<QLabel>("notice")->isVisible());
   keep("refused");
 }

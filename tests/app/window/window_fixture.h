@@ -89,6 +89,13 @@ protected:
     view().setFocus();
     QTest::keyClick(&view(), key, modifiers);
   }
+  /// A key pressed wherever the focus is, as a person does; then all is drawn.
+  void press_at_focus(Qt::Key key, Qt::KeyboardModifiers modifiers = {}) {
+    activate();
+    QWidget* focus = window->focusWidget();
+    QTest::keyClick(focus != nullptr ? focus : window.get(), key, modifiers);
+    settle();
+  }
 
   QString path(const char* name) const { return folder.filePath(name); }
   Session& session() { return window->session(); }
