@@ -62,7 +62,8 @@ void FinePicture::add_sample(const Eigen::Matrix4d& clip, const Mat3& axes, doub
   glViewport(0, 0, width_, height_);
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  // The mean is opaque, or what lies behind the view would shine through it.
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, color_.id());
   glActiveTexture(GL_TEXTURE1);

@@ -13,6 +13,8 @@
 #include <QToolButton>
 #include <QWheelEvent>
 
+#include <cmath>
+#include <cstdlib>
 #include <map>
 
 namespace cagewright::app {
@@ -376,6 +378,38 @@ TEST_F(Craft, PaintsWhereTheNextCageIsFiner) {
   EXPECT_EQ(session().settings().density, DensitySource::even);
   generate();
   EXPECT_GT(finer, share_near());
+}
+
+/// How far apart two pictures of a window are, in levels of 0 to 255, in the mean.
+double mean_difference(const QImage& a, const QImage& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double sum = 0;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) {
+      const QRgb p = a.pixel(x, y);
+      const QRgb q = b.pixel(x, y);
+      sum += std::abs(qRed(p) - qRed(q)) + std::abs(qGreen(p) - qGreen(q)) +
+             std::abs(qBlue(p) - qBlue(q));
+    }
+  }
+  return sum / 3 / a.width() / a.height();
+}
+
+TEST_F(Craft, ShowsAtRestWhatItShowedBefore) {
+  open_caged();
+  Layers layers = document().layers();
+  layers.occlusion = false;
+  document().set_layers(layers);
+  settle();
+  const QImage first = window->grab().toImage();
+  view().finish_picture();
+  settle();
+  EXPECT_LT(mean_difference(first, window->grab().toImage()), 2) << "with smooth outlines";
+  layers.occlusion = true;
+  document().set_layers(layers);
+  settle();
+  view().finish_picture();
+  EXPECT_LT(mean_difference(first, window->grab().toImage()), 8) << "and with shade in corners";
 }
 
 TEST_F(Craft, LooksLikeWhatIsChosenAndGetsFinerAtRest) {
