@@ -137,6 +137,7 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
   connect(&document, &Document::cageChanged, this, &FiguresPanel::update_figures);
   connect(&document, &Document::metricsChanged, this, &FiguresPanel::update_figures);
   connect(&document, &Document::modelChanged, this, &FiguresPanel::update_figures);
+  connect(&document, &Document::checkChanged, this, &FiguresPanel::update_figures);
   connect(&document, &Document::cageChanged, this, &FiguresPanel::update_check);
   connect(&document, &Document::checkChanged, this, &FiguresPanel::update_check);
   update_figures();
@@ -182,7 +183,10 @@ void FiguresPanel::update_figures() {
   set("faces", triangles == cage.face_count()
                    ? count(triangles)
                    : tr("%1 (%2 triangles)").arg(count(cage.face_count()), count(triangles)));
-  if (const auto& metrics = document_.metrics()) {
+  // How a cage that is none compares is no praise of it.
+  const auto& report = document_.check().report;
+  const auto& metrics = document_.metrics();
+  if (metrics && (!report || report->valid())) {
     set("volume_ratio", metrics->volume_ratio > 0
                             ? with_cue(locale.toString(metrics->volume_ratio, 'f', 3),
                                        -metrics->volume_ratio, {-2, -3.5})
