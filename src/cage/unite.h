@@ -40,8 +40,8 @@ bool can_unite();
 /// Tournois and Yaz, "Polygon Mesh Processing", CGAL User Manual 5.5), pairwise in a balanced tree
 /// over space. The result does not depend on the number of threads.
 ///
-/// Errors: not_available (see can_unite()), invalid_option (no solid, a solid without volume or not finite), no_valid_cage,
-/// cancelled.
+/// Errors: not_available (see can_unite()), invalid_option (no solid, a solid without volume or not
+/// finite), no_valid_cage, cancelled.
 /// Cost: a tenth of a second for the 32 boxes of a character, up to two seconds for 110 boxes that
 /// overlap much, on two idle cores.
 Result<TriangleMesh> unite(std::span<const Hexahedron> solids, const UniteOptions& options = {},

@@ -210,8 +210,8 @@ Result<std::shared_ptr<const Coordinates>> green_coordinates(const PolygonMesh& 
     return surface.error();
   }
   auto rule = normal_columns(cage.positions, *surface);
-  return std::shared_ptr<const Coordinates>(std::make_shared<GreenCoordinates>(
-      std::move(rule), *std::move(surface), options.outside));
+  return std::shared_ptr<const Coordinates>(
+      std::make_shared<GreenCoordinates>(std::move(rule), *std::move(surface), options.outside));
 }
 
 constinit const CoordinateKind green_kind = {

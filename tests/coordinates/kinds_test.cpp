@@ -19,9 +19,9 @@ TEST(CoordinateKinds, AreNamedOnceAndDescribed) {
   for (const CoordinateKind* kind : coordinate_kinds()) {
     EXPECT_TRUE(names.insert(kind->name).second) << kind->name;
     EXPECT_EQ(find_coordinate_kind(kind->name), kind);
-    for (const std::string_view text : {kind->idea, kind->quads, kind->sign, kind->reproduces,
-                                        kind->on_cage, kind->outside, kind->locality, kind->made_by,
-                                        kind->cost}) {
+    for (const std::string_view text :
+         {kind->idea, kind->quads, kind->sign, kind->reproduces, kind->on_cage, kind->outside,
+          kind->locality, kind->made_by, kind->cost}) {
       EXPECT_FALSE(text.empty()) << kind->name;
     }
     EXPECT_TRUE(kind->prepare != nullptr && kind->rule != nullptr) << kind->name;
@@ -80,8 +80,9 @@ TEST(CoordinateSettings, AreReadBackFromTheirText) {
   for (const CoordinateKind* kind : coordinate_kinds()) {
     CoordinateSettings settings(*kind);
     for (const CoordinateOption* option : kind->options) {
-      const std::string value = option->words.empty() ? std::to_string((option->least + option->most) / 2)
-                                                      : std::string(option->words.back());
+      const std::string value = option->words.empty()
+                                    ? std::to_string((option->least + option->most) / 2)
+                                    : std::string(option->words.back());
       EXPECT_TRUE(settings.set(option->name, value)) << kind->name << ' ' << option->name;
     }
     const Result<CoordinateSettings> again = CoordinateSettings::parse(kind->name, settings.text());

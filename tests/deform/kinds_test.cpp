@@ -114,8 +114,8 @@ TEST_P(KindOfCoordinates, IsReadBackFromEachFormat) {
   const auto coordinates = prepare_coordinates(cage_, settings());
   ASSERT_TRUE(coordinates);
   const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("cagewright_kind_" + std::to_string(::getpid()) +
-                                                "_" + std::string(GetParam()->name));
+      std::filesystem::temp_directory_path() /
+      ("cagewright_kind_" + std::to_string(::getpid()) + "_" + std::string(GetParam()->name));
   const auto expected = solve_all<float>(**coordinates, model_.positions);
   ASSERT_TRUE(expected);
   for (const WeightsFormat format :
@@ -137,8 +137,7 @@ TEST_P(KindOfCoordinates, IsReadBackFromEachFormat) {
     }
     const auto rule = GetParam()->rule(cage_, stored->settings);
     ASSERT_TRUE(rule);
-    Result<Deformer> deformer =
-        Deformer::from_weights(model_, *rule, std::move(stored->weights));
+    Result<Deformer> deformer = Deformer::from_weights(model_, *rule, std::move(stored->weights));
     ASSERT_TRUE(deformer) << deformer.error().message;
     Deformer direct = bound(WeightStorage::single);
     deformer->set_cage(pose(3));

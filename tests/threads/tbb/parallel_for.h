@@ -1,7 +1,8 @@
 /// \file
 /// Stands for TBB's header of this name in builds with ThreadSanitizer (see CMakePresets.json). The
 /// TBB of the system is not compiled for it: it would not see how TBB hands work from thread to
-/// thread, and take every loop for a race. Here a second thread, which it does see, helps with each.
+/// thread, and take every loop for a race. Here a second thread, which it does see, helps with
+/// each.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -13,8 +14,7 @@
 
 namespace tbb {
 
-template <class Body>
-void parallel_for(const blocked_range<std::size_t>& range, const Body& body) {
+template <class Body> void parallel_for(const blocked_range<std::size_t>& range, const Body& body) {
   const std::size_t grain = std::max<std::size_t>(range.grainsize(), 1);
   if (range.size() <= grain) {
     if (!range.empty()) {
