@@ -2,7 +2,7 @@
 #include "load.h"
 #include "report/cage_words.h"
 
-#include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/every_cutting.h>
 #include <cagewright/validate/validate_cage.h>
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ Result<ModelAndCage> read_model_and_cage(const BindingOptions& options) {
 }
 
 Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Session& session) {
-  const Triangulation triangles = triangulate(meshes.bound.mesh);
+  const Triangulation triangles = every_cutting(meshes.bound.mesh);
   const TriangleView model{meshes.bound.mesh.positions, triangles.triangles};
   const Result<ValidityReport> report = validate_cage(
       meshes.cage, model,

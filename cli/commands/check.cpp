@@ -9,6 +9,7 @@
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/mesh/weld.h>
 #include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/every_cutting.h>
 #include <cagewright/validate/validate_cage.h>
 
 #include <fmt/format.h>
@@ -68,11 +69,13 @@ int run(const Options& options, const Session& session) {
   const PolygonMesh* const cage = &meshes->cage;
   const Triangulation triangles = triangulate(*model);
   const TriangleView view{model->positions, triangles.triangles};
-  auto report = validate_cage(*cage, view, options.validate, session.progress());
+  const Triangulation cuttings = every_cutting(*model);
+  auto report = validate_cage(*cage, {model->positions, cuttings.triangles}, options.validate,
+                              session.progress());
   if (!report) {
     return fail(report.error());
   }
-  name_model_faces(*report, triangles.face_of);
+  name_model_faces(*report, cuttings.face_of);
   const std::vector<FileNote> notes = hints(*report, *cage, view, options.files);
   const CageMetrics metrics = measure_cage(report->merged_vertices > 0 ? weld(*cage) : *cage, view);
   if (!options.json.empty()) {

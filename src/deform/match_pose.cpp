@@ -218,7 +218,14 @@ std::optional<Match> match_by_number(const PolygonMesh& rest, const PolygonMesh&
   const UsedNames at_rest = used_names(rest);
   const UsedNames moved = used_names(posed);
   if (at_rest.count == moved.count) {
-    return by_names(rest, at_rest.of, posed, moved.of, at_rest.count);
+    std::optional<Match> pose = by_names(rest, at_rest.of, posed, moved.of, at_rest.count);
+    if (pose) {
+      pose->note = pose->note.empty() ? "it has other vertices that no face uses than the cage at "
+                                        "rest; these are left out"
+                                      : "it has other vertices that no face uses than the cage at "
+                                        "rest, and other faces; both are left out";
+    }
+    return pose;
   }
   // Merged here and split there, or the other way round.
   const WeldedPoints rest_points = weld_points(rest.positions);

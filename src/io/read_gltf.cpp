@@ -40,6 +40,7 @@ public:
       }
     }
     note_other_scenes();
+    note_unknown_extensions();
     if (scene_.mesh.face_count() == 0) {
       return nothing_to_see();
     }
@@ -72,6 +73,25 @@ private:
       scene_.notes.add(
           "other_scenes", [&] { return one_line(source_.name); },
           "the scene " + name_of_scene(shown) + " is read; left out are " + others_);
+    }
+  }
+
+  // Of those that a file requires: materials, textures and lights change no shape, and what changes
+  // it and is not supported was refused when the file was opened.
+  void note_unknown_extensions() {
+    constexpr std::string_view harmless[] = {
+        "KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_",
+        "MSFT_texture_",         "KHR_lights_",    "EXT_lights_",  "KHR_xmp"};
+    const Json& required = member(document_.json(), "extensionsRequired");
+    for (std::size_t i = 0; required.is_array() && i < required.size(); ++i) {
+      const std::string name = to_text(required[i]);
+      if (std::ranges::none_of(harmless,
+                               [&](std::string_view begin) { return name.starts_with(begin); })) {
+        scene_.notes.add(
+            "unknown_extension", [&] { return one_line(source_.name); },
+            "needs the extension " + one_line(name) +
+                ", which is not known; what it would show is left out");
+      }
     }
   }
 

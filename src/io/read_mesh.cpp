@@ -12,35 +12,6 @@
 namespace cagewright {
 namespace {
 
-// What people have at hand besides meshes, by the first bytes.
-struct Foreign {
-  std::string_view begin;
-  std::string_view name;
-  std::string_view remedy;
-};
-constexpr Foreign foreign_files[] = {
-    {"\x1f\x8b", "a gzip archive", "unpack it first"},
-    {"PK\x03\x04", "a zip archive", "unpack it first"},
-    {"Kaydara FBX", "an FBX file", "export the model as OBJ or GLB"},
-    {"; FBX", "an FBX file", "export the model as OBJ or GLB"},
-    {"BLENDER", "a Blender file", "export the model as OBJ or GLB"},
-    {"<?xml", "an XML file", "export the model as OBJ or GLB"},
-};
-
-} // namespace
-
-std::optional<Error> foreign_file(const Source& source) {
-  for (const Foreign& kind : foreign_files) {
-    if (source.bytes.starts_with(kind.begin)) {
-      return source.error("is " + std::string(kind.name) + "; " + std::string(kind.remedy),
-                          ErrorCode::unsupported);
-    }
-  }
-  return std::nullopt;
-}
-
-namespace {
-
 Error is_empty(const Source& source) {
   return source.error("the file is empty" + std::string(export_again));
 }

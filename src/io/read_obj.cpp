@@ -28,7 +28,7 @@ public:
       }
     }
     if (mesh_.face_count() == 0) {
-      return unknown_ ? source_.error_in_line(*unknown_, not_obj(*unknown_)) : no_faces(source_);
+      return nothing_to_see();
     }
     if (!mesh_.colors.empty()) {
       mesh_.colors.resize(mesh_.positions.size(), white);
@@ -68,6 +68,7 @@ private:
       begin_group(keyword == "o", cursor_.rest_of_line());
     } else if (keyword == "usemtl" || keyword == "mtllib" || is_obj_list(keyword) ||
                keyword == "s") {
+      has_surfaces_ = has_surfaces_ || keyword == "surf";
       if (attributes_ != nullptr) {
         read_attribute(keyword);
       }
@@ -83,6 +84,14 @@ private:
   void end_statement() {
     cursor_.next_line();
     cursor_.set_backslash(TextCursor::Backslash::is_text);
+  }
+
+  [[nodiscard]] Error nothing_to_see() const {
+    if (has_surfaces_) {
+      return source_.error("has no faces, only free-form surfaces; export them as a mesh "
+                           "(polygons)");
+    }
+    return unknown_ ? source_.error_in_line(*unknown_, not_obj(*unknown_)) : no_faces(source_);
   }
 
   [[nodiscard]] std::string not_obj(std::size_t offset) const {
@@ -385,6 +394,7 @@ private:
   PolygonMesh mesh_;
   std::vector<Corner> corners_;
   std::vector<Index> vertices_;
+  bool has_surfaces_ = false;
   std::optional<std::size_t> unknown_; // where the first unknown statement stands
   std::optional<std::int64_t> vertices_in_file_;
   std::vector<Vec3> normal_lines_;      // kept only if asked for, as the next

@@ -112,7 +112,7 @@ COMMANDS = [
      {"out": ["642 of 642 vertices moved"], "err": ["faces are others"]}),
     # Its one vertex more is loose.
     ("F71", "deform base.obj cage.obj F71_posed_one_more.obj -o out/z.obj",
-     {"out": ["642 of 642 vertices moved"]}), # what is more is loose
+     {"out": ["642 of 642 vertices moved"], "err": ["F71_posed_one_more.obj: it has other vertices that no face uses"]}),
     ("F72a", "bind F72_subdivided.obj cage.obj -o out/w.npz", {"out": ["bound to 26 cage vertices"]}),
     ("F74", "bind base.obj F74_half_cage.obj -o out/w.npz", {"err": ["vertex_outside"], "not_err": ["would fit"]}),
     ("F78a", "deform base.obj cage.obj F78_posed_corner_rotated.obj -o out/z.obj",

@@ -83,7 +83,8 @@ TEST(ReadMesh, NamesFilesOfOtherKinds) {
     return mesh ? "read" : mesh.error().message.substr(mesh.error().message.find(": ") + 2);
   };
   EXPECT_EQ(message("a.obj", "\x1f\x8b\x08"), "is a gzip archive; unpack it first");
-  EXPECT_EQ(message("a.obj", "PK\x03\x04"), "is a zip archive; unpack it first");
+  EXPECT_EQ(message("a.obj", "PK\x03\x04"),
+            "is a zip archive (3MF and USDZ are such); unpack it, or export it as OBJ or GLB");
   EXPECT_EQ(message("a.fbx", "Kaydara FBX Binary"),
             "is an FBX file; export the model as OBJ or GLB");
   EXPECT_EQ(message("a.txt", "once upon a time"),
