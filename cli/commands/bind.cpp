@@ -68,6 +68,10 @@ int run(const Options& options, const Session& session) {
     return fail(counts.error());
   }
   warn_of_points(options.binding.cage, *counts);
+  if ((*coordinates)->error_bound() > 0) {
+    session.say(fmt::format("{}: weights are proven to within {:.2g}\n", options.output,
+                            (*coordinates)->error_bound()));
+  }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   session.say(fmt::format("{}: {} model vertices bound to {} cage vertices in {:.2f} s\n",
                           options.output, meshes->bound.mesh.positions.size(),

@@ -19,7 +19,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -179,14 +178,10 @@ Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
   if (!rule) {
     return about_file(options.binding.cage, rule.error());
   }
-  std::vector<Index> all((*rule)->columns());
-  std::iota(all.begin(), all.end(), Index(0));
-  std::vector<Vec3> moves(all.size());
   std::vector<std::vector<Vec3>> results;
   for (const std::vector<Vec3>& pose : poses) {
-    (*rule)->move(pose, moves);
     std::vector<Vec3> moved = bound;
-    move_points(stored->weights, all, moves, bound, moved);
+    move_to_pose(stored->weights, PosedColumns(**rule, pose), bound, moved);
     results.push_back(for_all ? std::move(moved) : with_part(meshes, moved));
   }
   return results;

@@ -60,6 +60,13 @@ constinit const CoordinateOption outside_option = {
             "the coordinates through the nearest face",
     .words = outside_words};
 
+constinit const CoordinateOption accuracy_option = {
+    .name = "accuracy",
+    .help = "How near weights come that no closed form gives; 0: as each kind is by itself",
+    .initial = 0,
+    .least = 0,
+    .most = 0.1};
+
 std::span<const CoordinateKind* const> coordinate_kinds() {
   return kinds;
 }

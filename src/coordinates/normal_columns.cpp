@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace cagewright {
@@ -10,9 +11,11 @@ namespace {
 
 class NormalColumns : public ColumnRule {
 public:
-  NormalColumns(std::span<const Vec3> cage_at_rest, const Surface& surface)
-      : ColumnRule(cage_at_rest), quads_(surface.quads), triangles_(surface.triangles()),
-        unit_(surface.frame.diagonal) {
+  /// \param quads  of which the middles are vertices behind those of the cage
+  NormalColumns(std::span<const Vec3> cage_at_rest, std::vector<std::array<Index, 4>> quads,
+                std::vector<Triangle> triangles, double unit)
+      : ColumnRule(cage_at_rest), quads_(std::move(quads)), triangles_(std::move(triangles)),
+        unit_(unit) {
     const std::vector<Vec3> positions = with_middles(cage_at_rest, quads_);
     for (const Triangle& t : triangles_) {
       const Vec3 u = positions[t[1]] - positions[t[0]];
@@ -99,7 +102,14 @@ double stretch(const Vec3& u, const Vec3& v, const Vec3& u_now, const Vec3& v_no
 
 std::shared_ptr<const ColumnRule> normal_columns(std::span<const Vec3> cage_at_rest,
                                                  const Surface& surface) {
-  return std::make_shared<NormalColumns>(cage_at_rest, surface);
+  return std::make_shared<NormalColumns>(cage_at_rest, surface.quads, surface.triangles(),
+                                         surface.frame.diagonal);
+}
+
+std::shared_ptr<const ColumnRule> triangle_columns(std::span<const Vec3> cage_at_rest,
+                                                   std::vector<Triangle> triangles, double unit) {
+  return std::make_shared<NormalColumns>(cage_at_rest, std::vector<std::array<Index, 4>>(),
+                                         std::move(triangles), unit);
 }
 
 } // namespace cagewright

@@ -6,6 +6,8 @@
 #include <cagewright/coordinates/columns.h>
 
 #include <memory>
+#include <span>
+#include <vector>
 
 namespace cagewright {
 
@@ -15,6 +17,11 @@ namespace cagewright {
 /// Cohen-Or 2008). A triangle that has collapsed takes the direction of those round it.
 std::shared_ptr<const ColumnRule> normal_columns(std::span<const Vec3> cage_at_rest,
                                                  const Surface& surface);
+
+/// The same for triangles of cage vertices alone.
+/// \param unit  D
+std::shared_ptr<const ColumnRule> triangle_columns(std::span<const Vec3> cage_at_rest,
+                                                   std::vector<Triangle> triangles, double unit);
 
 /// The stretch of a triangle or patch with edge or tangent vectors u, v at rest and u', v' now:
 /// sqrt((|u'|^2 |v|^2 - 2 (u'.v') (u.v) + |v'|^2 |u|^2) / 2) / |u x v|.

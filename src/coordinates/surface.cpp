@@ -199,34 +199,51 @@ Result<Surface> Surface::create(const PolygonMesh& cage, QuadTreatment quads) {
                                              : Vec3(Vec3::Zero()));
   }
   std::vector<Triangle> kept;
-  for (const Triangle& t : cut.mesh.triangles) {
+  for (std::size_t i = 0; i < cut.mesh.triangles.size(); ++i) {
+    const Triangle& t = cut.mesh.triangles[i];
     if (!is_degenerate<RealVec3>(surface.positions[t[0]].cast<Real>(),
                                  surface.positions[t[1]].cast<Real>(),
                                  surface.positions[t[2]].cast<Real>())) {
       kept.push_back(t);
+      surface.source.push_back(i);
     }
   }
   if (kept.empty()) {
     return Error{ErrorCode::invalid_cage, "the faces of the cage have no area"};
   }
-  if (signed_volume6(surface.positions, kept) < 0) {
+  surface.is_turned = signed_volume6(surface.positions, kept) < 0;
+  if (surface.is_turned) {
     for (Triangle& t : kept) {
       std::swap(t[1], t[2]);
     }
   }
-  for (const Triangle& t : kept) {
-    surface.faces.push_back(make_face(t, surface.positions));
+  surface.connect(kept);
+  return surface;
+}
+
+Surface Surface::of_triangles(const CageFrame& frame, std::vector<Vec3> positions,
+                              std::span<const Triangle> triangles) {
+  Surface surface;
+  surface.frame = frame;
+  surface.cage_vertices = positions.size();
+  surface.positions = std::move(positions);
+  surface.connect(triangles);
+  return surface;
+}
+
+void Surface::connect(std::span<const Triangle> triangles) {
+  for (const Triangle& t : triangles) {
+    faces.push_back(make_face(t, positions));
   }
-  const std::vector<EdgeUse> uses = edge_uses(kept);
+  const std::vector<EdgeUse> uses = edge_uses(triangles);
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (i == 0 || !uses[i].same_edge(uses[i - 1])) {
-      surface.edges.push_back(make_edge(uses[i].from, uses[i].to, surface.positions));
+      edges.push_back(make_edge(uses[i].from, uses[i].to, positions));
     }
     // Edge e of a face is opposite corner e + 2.
-    surface.faces[uses[i].triangle].edges[(uses[i].opposite + 1) % 3] =
-        static_cast<Index>(surface.edges.size() - 1);
+    faces[uses[i].triangle].edges[(uses[i].opposite + 1) % 3] =
+        static_cast<Index>(edges.size() - 1);
   }
-  return surface;
 }
 
 std::vector<Triangle> Surface::triangles() const {

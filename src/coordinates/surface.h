@@ -97,13 +97,19 @@ struct Surface {
 
   CageFrame frame;
   std::size_t cage_vertices = 0; ///< C
+  bool is_turned = false;        ///< the cage was inside out
   std::vector<std::array<Index, 4>> quads;
   std::vector<Vec3> positions; ///< with the middles, in the frame
   std::vector<Face> faces;
+  std::vector<std::size_t> source; ///< of each face, which triangle of the cut cage it is
   std::vector<Edge> edges;
 
   /// Errors: invalid_cage (as check_surface() and frame_of() say; no face with area).
   static Result<Surface> create(const PolygonMesh& cage, QuadTreatment quads);
+
+  /// Any triangles with area, open or closed, of positions in a frame.
+  static Surface of_triangles(const CageFrame& frame, std::vector<Vec3> positions,
+                              std::span<const Triangle> triangles);
 
   /// The corners of each triangle.
   [[nodiscard]] std::vector<Triangle> triangles() const;
@@ -119,6 +125,9 @@ struct Surface {
       }
     }
   }
+
+private:
+  void connect(std::span<const Triangle> triangles);
 };
 
 } // namespace cagewright

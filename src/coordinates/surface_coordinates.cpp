@@ -7,15 +7,15 @@
 
 namespace cagewright {
 
-TileReport SurfaceCoordinates::solve_tile(std::span<const Vec3> points, std::span<double> weights,
-                                          std::size_t stride) const {
+TileReport FramedCoordinates::solve_tile(std::span<const Vec3> points, std::span<double> weights,
+                                         std::size_t stride) const {
   assert(points.size() <= 16 && stride >= 16);
   assert(weights.size() >= (columns() - 1) * stride + 16);
   TileReport report;
   if (!points.empty()) {
     std::array<Vec3, 16> framed;
     std::ranges::transform(points, framed.begin(),
-                           [&](const Vec3& p) { return surface_.frame.to_frame(p); });
+                           [&](const Vec3& p) { return frame_.to_frame(p); });
     report = solve_framed(std::span(framed).first(points.size()), weights.data(), stride);
   }
   for (std::size_t k = 0; points.size() < 16 && k < columns(); ++k) {

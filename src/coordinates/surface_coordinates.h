@@ -1,5 +1,5 @@
 /// \file
-/// What coordinates computed from a Surface share. Internal to this module.
+/// What kinds of coordinates share. Internal to this module.
 #pragma once
 
 #include "coordinates/surface.h"
@@ -18,14 +18,13 @@ struct WeightsOfTile {
   std::size_t stride = 16;
 };
 
-/// Points come in the frame of the surface, all columns of one to sixteen points are written.
-class SurfaceCoordinates : public Coordinates {
+/// Coordinates that are computed in the frame of the cage, all columns of one to sixteen points at
+/// once.
+class FramedCoordinates : public Coordinates {
 protected:
-  SurfaceCoordinates(std::shared_ptr<const ColumnRule> rule, Surface surface,
-                     OutsideTreatment outside)
-      : Coordinates(std::move(rule), outside), surface_(std::move(surface)) {}
-
-  [[nodiscard]] const Surface& surface() const { return surface_; }
+  FramedCoordinates(std::shared_ptr<const ColumnRule> rule, const CageFrame& frame,
+                    OutsideTreatment outside)
+      : Coordinates(std::move(rule), outside), frame_(frame) {}
 
 private:
   /// Writes weights[k * stride + i] of point i for column k; behind the last point anything.
@@ -34,6 +33,20 @@ private:
   TileReport solve_tile(std::span<const Vec3> points, std::span<double> weights,
                         std::size_t stride) const final;
 
+  CageFrame frame_;
+};
+
+/// Those that are computed from triangles.
+class SurfaceCoordinates : public FramedCoordinates {
+protected:
+  /// \param rule  made before: `surface` is moved from
+  SurfaceCoordinates(std::shared_ptr<const ColumnRule> rule, Surface surface,
+                     OutsideTreatment outside)
+      : FramedCoordinates(std::move(rule), surface.frame, outside), surface_(std::move(surface)) {}
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+
+private:
   Surface surface_;
 };
 

@@ -84,6 +84,7 @@ public:
       flagged_ = flagged_ | (gap < Lanes(2 * near_edge * near_edge / edge.length));
       logarithm(more / larger(gap, Lanes(1e-30))).store(log_ + i * lanes);
     }
+    near_edges_ = flagged_;
   }
 
   static std::size_t scratch_size(const Surface& surface) {
@@ -118,6 +119,18 @@ public:
     return f;
   }
 
+  [[nodiscard]] HWY_INLINE Lanes distance(std::size_t vertex) const {
+    return Lanes::load(distance_ + vertex * lanes);
+  }
+
+  /// L_e.
+  [[nodiscard]] HWY_INLINE Lanes log(std::size_t edge) const {
+    return Lanes::load(log_ + edge * lanes);
+  }
+
+  /// Points near an edge or a vertex.
+  [[nodiscard]] LaneFlags near_edges() const { return LaneFlags(near_edges_); }
+
   /// Points that PointTerms must do, after all faces were seen: near the cage or not inside it
   /// once.
   [[nodiscard]] LaneFlags flagged() const {
@@ -132,6 +145,7 @@ private:
   double* distance_;
   double* log_;
   Lanes winding_ = Lanes(0.0);
+  Mask near_edges_;
   Mask flagged_;
 };
 
@@ -259,6 +273,31 @@ private:
   std::vector<double> face_distance_;
 };
 
+/// J_e, the integrals of r along all edges, for each lane.
+HWY_INLINE void length_integrals(const Surface& surface, const LanePoints& points, Lanes x, Lanes y,
+                                 Lanes z, double* to) {
+  for (std::size_t i = 0; i < surface.edges.size(); ++i) {
+    const Surface::Edge& edge = surface.edges[i];
+    const Vec3& from = surface.positions[edge.from];
+    const Lanes tau = fma(Lanes(from.x()) - x, Lanes(edge.along.x()),
+                          fma(Lanes(from.y()) - y, Lanes(edge.along.y()),
+                              (Lanes(from.z()) - z) * Lanes(edge.along.z())));
+    const Lanes d = points.distance(edge.from);
+    const Lanes d_next = points.distance(edge.to);
+    const Lanes square = larger(d * d - tau * tau, Lanes(0.0));
+    const Lanes twice = fma(tau + Lanes(edge.length), d_next, -(tau * d)) + square * points.log(i);
+    (twice * Lanes(0.5)).store(to + i * lanes);
+  }
+}
+
+/// The same of an edge for one point, with care.
+inline double length_integral(const Surface::Edge& edge, const PointTerms& point,
+                              const PointTerms::EdgeTerms& terms) {
+  return (terms.tau_next * point.distance(edge.to) - terms.tau * point.distance(edge.from) +
+          terms.square * terms.log) /
+         2;
+}
+
 /// Sixteen points, some of them perhaps the last one again.
 struct SixteenPoints {
   alignas(64) std::array<double, 16> x, y, z;
@@ -313,6 +352,20 @@ struct PointPlace {
   std::vector<std::pair<std::size_t, double>> through;
 };
 
+/// The hats of a face that the point lies on.
+inline std::array<double, 3> hats_on(const PointTerms& point, std::size_t f) {
+  std::array<double, 3> hats;
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    hats[i] = std::clamp(point.face(f).lambda[i], 0.0, 1.0);
+    sum += hats[i];
+  }
+  for (double& hat : hats) {
+    hat /= sum;
+  }
+  return hats;
+}
+
 /// \param touching  nearer than this, in diagonals, a point lies on the cage
 inline PointPlace place_of(const Surface& surface, const PointTerms& point,
                            double touching = on_cage) {
@@ -325,14 +378,9 @@ inline PointPlace place_of(const Surface& surface, const PointTerms& point,
   }
   if (point.face_distance(nearest) < touching * surface.frame.scaled_diagonal()) {
     place.on_surface = true;
-    double sum = 0;
+    const std::array<double, 3> hats = hats_on(point, nearest);
     for (std::size_t i = 0; i < 3; ++i) {
-      const double hat = std::clamp(point.face(nearest).lambda[i], 0.0, 1.0);
-      place.hats[i] = {surface.faces[nearest].vertices[i], hat};
-      sum += hat;
-    }
-    for (auto& [vertex, hat] : place.hats) {
-      hat /= sum;
+      place.hats[i] = {surface.faces[nearest].vertices[i], hats[i]};
     }
     return place;
   }

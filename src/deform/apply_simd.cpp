@@ -8,10 +8,13 @@
 
 #include "core/parallel.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <numeric>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
@@ -306,12 +309,40 @@ void move_points(const CompactWeights& weights, std::span<const Index> columns,
            [&](std::size_t tile) { return weights.steps_of_tile(tile); });
 }
 
-void move_sixteen(std::span<const double> weights, std::span<const Index> columns,
-                  std::span<const Vec3> moves, std::span<const Vec3> base,
-                  std::span<Vec3> positions) {
-  assert(base.size() <= 16 && positions.size() == base.size());
-  move_some(WeightsIn<double>{weights.data(), weights.data(), 16}, {columns, moves},
-            {base, positions, nullptr});
+PosedColumns::PosedColumns(const ColumnRule& rule, std::span<const Vec3> cage)
+    : columns(rule.columns()), moves(columns.size()), divisor(rule.divisor(cage)) {
+  std::iota(columns.begin(), columns.end(), Index(0));
+  rule.move(cage, moves);
+}
+
+void divide_points(const Vec3& center, const std::array<std::span<const Vec3>, 3>& by,
+                   std::span<Vec3> positions) {
+  parallel_for(0, positions.size(), 256, [&](std::size_t i) {
+    Mat3 matrix = Mat3::Identity();
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      matrix.col(a) += by[static_cast<std::size_t>(a)][i];
+    }
+    positions[i] = center + matrix.partialPivLu().solve(positions[i] - center);
+  });
+}
+
+void move_sixteen(std::span<const double> weights, const PosedColumns& pose,
+                  std::span<const Vec3> rest, std::span<Vec3> positions) {
+  assert(rest.size() <= 16 && positions.size() == rest.size());
+  const auto move = [&](std::span<const Vec3> by, std::span<const Vec3> base, std::span<Vec3> to) {
+    move_some(WeightsIn<double>{weights.data(), weights.data(), 16}, {pose.columns, by},
+              {base, to, nullptr});
+  };
+  move(pose.moves, rest, positions);
+  if (pose.divisor) {
+    std::array<std::array<Vec3, 16>, 3> by;
+    for (std::size_t a = 0; a < 3; ++a) {
+      by[a].fill(Vec3::Zero());
+      const std::span<Vec3> some = std::span(by[a]).first(rest.size());
+      move(pose.divisor->moves[a], some, some);
+    }
+    divide_points(pose.divisor->center, {by[0], by[1], by[2]}, positions);
+  }
 }
 
 } // namespace cagewright

@@ -106,6 +106,12 @@ void Deformer::update() {
 }
 
 void Deformer::move_model() {
+  const std::optional<ColumnDivisor> divisor = rule_->divisor(cage_);
+  if (divisor || is_divided_) {
+    move_divided();
+    is_divided_ = divisor.has_value();
+    return;
+  }
   rule_->move(cage_, wanted_);
   // A pose set as a whole starts from the rest, so that it does not depend on the way there.
   const bool whole = moved_ == cage_.size();
@@ -127,6 +133,18 @@ void Deformer::move_model() {
       },
       weights_);
   applied_ = wanted_;
+}
+
+/// From the rest: what was divided cannot be added to.
+void Deformer::move_divided() {
+  const PosedColumns pose(*rule_, cage_);
+  const std::vector<Vec3> before = has_normals_ ? positions_ : std::vector<Vec3>();
+  std::visit([&](const auto& weights) { move_to_pose(weights, pose, rest_, positions_); },
+             weights_);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    tile_travel_[i / 16] += (positions_[i] - before[i]).cwiseAbs().maxCoeff();
+  }
+  applied_ = pose.moves;
 }
 
 std::vector<float> Deformer::influence(std::span<const Index> cage_vertices) const {

@@ -3,6 +3,7 @@
 #include "core/maths.h"
 #include "core/parallel.h"
 #include "core/rotation.h"
+#include "deform/apply.h"
 #include <cagewright/coordinates/coordinates.h>
 #include <cagewright/mesh/measures.h>
 
@@ -84,32 +85,31 @@ Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> mo
   }
   const std::size_t columns = (*coordinates)->columns();
   const PoseFrame frame = pose_frame(model);
-  std::array<std::vector<Vec3>, standard_poses.size()> moves;
-  for (std::size_t k = 0; k < moves.size(); ++k) {
+  std::vector<PosedColumns> poses;
+  for (const StandardPose kind : standard_poses) {
     std::vector<Vec3> pose;
     for (const Vec3& c : cage.positions) {
-      pose.push_back(posed(standard_poses[k], frame, c));
+      pose.push_back(posed(kind, frame, c));
     }
-    moves[k].resize(columns);
-    (*coordinates)->rule()->move(pose, moves[k]);
+    poses.emplace_back(*(*coordinates)->rule(), pose);
   }
   const std::size_t tiles = (model.size() + tile_points - 1) / tile_points;
   const Sums sums = parallel_reduce_ordered(
       0, tiles, 16, Sums(),
       [&](std::size_t first, std::size_t last) {
         Sums found;
-        std::vector<double> weights(tile_points * columns);
+        AlignedBuffer<double> weights(tile_points * columns);
         for (std::size_t t = first; t < last && !progress.cancelled(); ++t) {
           const auto points =
               model.subspan(t * tile_points, std::min(tile_points, model.size() - t * tile_points));
-          found.counts.add((*coordinates)->solve(points, weights));
-          for (std::size_t k = 0; k < moves.size(); ++k) {
+          found.counts.add((*coordinates)->solve(points, weights.span()));
+          std::array<Vec3, tile_points> followed;
+          for (std::size_t k = 0; k < poses.size(); ++k) {
+            move_sixteen(weights.span(), poses[k], points,
+                         std::span(followed).first(points.size()));
             for (std::size_t i = 0; i < points.size(); ++i) {
-              Vec3 followed = points[i];
-              for (std::size_t c = 0; c < moves[k].size(); ++c) {
-                followed += weights[c * tile_points + i] * moves[k][c];
-              }
-              const double error = (followed - posed(standard_poses[k], frame, points[i])).norm();
+              const double error =
+                  (followed[i] - posed(standard_poses[k], frame, points[i])).norm();
               found.sum[k] += error;
               found.max[k] = std::max(found.max[k], error);
             }
@@ -131,7 +131,7 @@ Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> mo
   errors.undefined = sums.counts.undefined;
   errors.outside = sums.counts.outside;
   const double unit = diagonal(model);
-  for (std::size_t k = 0; k < moves.size(); ++k) {
+  for (std::size_t k = 0; k < poses.size(); ++k) {
     const double mean = sums.sum[k] / static_cast<double>(model.size());
     errors.of[k] = {unit > 0 ? mean / unit : 0, unit > 0 ? sums.max[k] / unit : 0};
   }

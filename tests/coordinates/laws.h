@@ -14,6 +14,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -302,14 +304,15 @@ inline void expect_invariance(const Make& make, const PolygonMesh& cage,
                         const char* what) {
     const Made made = make(other);
     ASSERT_TRUE(made) << what << ": " << made.error().message;
-    // Normals are in units of the box's diagonal, which turns do change.
-    const double unit = all_columns ? diagonal(other.positions) * map_scale(map) : 1;
+    // Normals are in units of the box's diagonal, which turns do change: by what they reproduce.
+    const std::vector<Vec3> before = (*plain)->rule()->reproduced_from();
+    const std::vector<Vec3> after = (*made)->rule()->reproduced_from();
     for (const Vec3& x : points) {
       std::vector<double> expected = solve(**plain, x).weights;
       std::vector<double> found = solve(**made, map(x)).weights;
       const std::size_t vertices = cage.positions.size();
       for (std::size_t k = vertices; all_columns && k < found.size(); ++k) {
-        found[k] *= unit / diagonal(cage.positions);
+        found[k] *= after[k].norm() * map_scale(map) / before[k].norm();
       }
       if (!all_columns) {
         expected.resize(vertices);
@@ -348,6 +351,116 @@ inline void expect_invariance(const Make& make, const PolygonMesh& cage,
   same(shuffled, identity, false, "order of faces");
   same(turned, identity, false, "inside out");
   same(mirrored, mirror, false, "mirrored");
+}
+
+/// An affine map of the cage does the same to the model.
+inline void expect_affine_maps_follow(const Coordinates& coordinates,
+                                      const std::vector<Vec3>& points, double unit,
+                                      double tolerance) {
+  Eigen::Matrix3d map;
+  map << 1.1, 0.2, 0, -0.3, 0.9, 0.1, 0.05, 0, 1.3;
+  const Vec3 shift(0.5, -1, 0.25);
+  std::vector<Vec3> pose;
+  for (const Vec3& c : coordinates.rule()->cage_at_rest()) {
+    pose.emplace_back(map * c + shift);
+  }
+  for (const Vec3& x : points) {
+    EXPECT_LT((moved(coordinates, x, pose) - (map * x + shift)).norm(), tolerance * unit)
+        << x.transpose();
+  }
+}
+
+/// Points of the surface inside a triangle of `mesh`, on an edge and at a vertex of it, with what
+/// they weigh.
+struct OnCage {
+  Vec3 x;
+  std::vector<double> weights;
+};
+inline std::vector<OnCage> points_on(const TriangleMesh& mesh, std::size_t count,
+                                     std::uint64_t seed) {
+  Random random(seed);
+  std::vector<OnCage> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Triangle& t = mesh.triangles[random.below(mesh.triangles.size())];
+    std::array<double, 3> share = {1, 0, 0};
+    if (i % 3 != 2) {
+      share = {random.uniform(), random.uniform(), i % 3 == 0 ? random.uniform() : 0.0};
+    }
+    const double sum = share[0] + share[1] + share[2];
+    OnCage on{Vec3::Zero(), std::vector<double>(mesh.positions.size(), 0.0)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      on.x += share[k] / sum * mesh.positions[t[k]];
+      on.weights[t[k]] += share[k] / sum;
+    }
+    points.push_back(std::move(on));
+  }
+  return points;
+}
+
+/// On the cage they are the barycentric coordinates, and near it they come there.
+/// \param mesh  the cage, of triangles alone
+/// \param rate  at distance d from the cage the weights may differ by rate * d ln(1 / d)
+inline void expect_interpolation(const Coordinates& coordinates, const TriangleMesh& mesh,
+                                 double rate) {
+  const double unit = diagonal(mesh.positions);
+  Random random(31);
+  for (const OnCage& on : points_on(mesh, 45, 32)) {
+    const Solved here = solve(coordinates, on.x);
+    EXPECT_EQ(here.report.on_surface, 1) << on.x.transpose();
+    EXPECT_LT(relative_difference(here.weights, on.weights), 1e-12) << on.x.transpose();
+    for (const double distance : {1e-3, 1e-5, 1e-7, 1e-8, 3e-9, 1e-10, 1e-11, 1e-12}) {
+      for (int tries = 0; tries < 20; ++tries) {
+        const Vec3 near = on.x + distance * unit * random_direction(random);
+        if (is_inside(mesh, near)) {
+          EXPECT_LT(relative_difference(solve(coordinates, near).weights, on.weights),
+                    rate * distance * std::log(1 / distance) + 1e-12)
+              << distance << ": " << on.x.transpose();
+          break;
+        }
+      }
+    }
+  }
+}
+
+/// In a tetrahedron all interpolating kinds are the barycentric coordinates.
+inline void expect_barycentric_in_a_tetrahedron(const Make& make, double tolerance) {
+  const PolygonMesh cage = skewed(PolygonMesh(make_tetrahedron()));
+  const Made made = make(cage);
+  ASSERT_TRUE(made) << made.error().message;
+  Eigen::Matrix4d corners;
+  for (int i = 0; i < 4; ++i) {
+    corners.col(i) << cage.positions[static_cast<std::size_t>(i)], 1;
+  }
+  std::vector<Vec3> points = points_inside(cage, 30, 33);
+  for (const double distance : {1e-3, 1e-5, 1e-7}) {
+    const std::vector<Vec3> near = points_inside_near(cage, distance, 10, 34);
+    points.insert(points.end(), near.begin(), near.end());
+  }
+  for (const Vec3& x : points) {
+    const Eigen::Vector4d expected =
+        corners.partialPivLu().solve(Eigen::Vector4d(x.x(), x.y(), x.z(), 1));
+    const std::vector<double> found = solve(**made, x).weights;
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(found[i], expected[static_cast<Eigen::Index>(i)], tolerance) << x.transpose();
+    }
+  }
+}
+
+/// The numbers are the same with each instruction set of this machine.
+inline void expect_alike_on_all_targets(const Coordinates& coordinates,
+                                        const std::vector<Vec3>& points, double tolerance) {
+  std::vector<std::vector<double>> expected;
+  for (const Vec3& x : points) {
+    expected.push_back(solve(coordinates, x).weights);
+  }
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_LT(relative_difference(solve(coordinates, points[i]).weights, expected[i]), tolerance)
+          << hwy::TargetName(target) << ": " << points[i].transpose();
+    }
+  }
+  hwy::SetSupportedTargetsForTest(0);
 }
 
 } // namespace cagewright::test

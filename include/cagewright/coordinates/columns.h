@@ -5,8 +5,10 @@
 #include <cagewright/core/geometry.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -17,6 +19,14 @@ namespace cagewright {
 struct ColumnGroup {
   std::string_view name; ///< "vertices", "normals"
   std::size_t count = 0;
+};
+
+/// Matrices by which points are divided, of rules in which the sum of the weights turns with the
+/// cage: x' = center + (Id + A)^-1 (x - center + sum over k of W(x, k) moves_k), where
+/// A = sum over k of W(x, k) A_k.
+struct ColumnDivisor {
+  Vec3 center = Vec3::Zero();
+  std::array<std::vector<Vec3>, 3> moves; ///< K first columns of A_k, K second ones, K third ones
 };
 
 /// The rule of every kind of coordinates: a binding is a matrix W of P points by K columns, a
@@ -44,6 +54,11 @@ public:
   /// Writes m'_k - m_k of all K columns; exactly zero for the cage at rest.
   /// \param cage  C positions
   virtual void move(std::span<const Vec3> cage, std::span<Vec3> moves) const = 0;
+
+  /// What points are divided by besides, of the few rules in which they are; none at rest.
+  [[nodiscard]] virtual std::optional<ColumnDivisor> divisor(std::span<const Vec3> /*cage*/) const {
+    return std::nullopt;
+  }
 
   /// m_k, where the weights reproduce a point x from them: x = sum over k of W(x, k) m_k. Empty for
   /// kinds that do not.

@@ -61,6 +61,10 @@ public:
   /// What happens to points outside the cage; `error` is for who meets the points, see accept().
   [[nodiscard]] OutsideTreatment outside() const { return outside_; }
 
+  /// No weight inside the cage errs by more than this, of kinds that come near what they are named
+  /// after by a computation that ends somewhere; 0 for the others.
+  [[nodiscard]] virtual double error_bound() const { return 0; }
+
   /// The weights of up to 16 points: weights[k * stride + i] of point i for column k. Computed in
   /// double, and rounded when stored to float. Of each 16 numbers those behind the last point
   /// become 0, and so do those of points that are undefined, or outside and without weights there.

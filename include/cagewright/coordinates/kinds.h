@@ -112,7 +112,8 @@ std::string values_of(const CoordinateOption& option);
 std::string initial_text(const CoordinateOption& option);
 
 // Options that several kinds share.
-extern const CoordinateOption quads_option;   ///< which QuadTreatment
-extern const CoordinateOption outside_option; ///< which OutsideTreatment
+extern const CoordinateOption quads_option;    ///< which QuadTreatment
+extern const CoordinateOption outside_option;  ///< which OutsideTreatment
+extern const CoordinateOption accuracy_option; ///< of kinds that are not in closed form
 
 } // namespace cagewright

@@ -95,13 +95,15 @@ private:
            const DeformerOptions& options, std::optional<NormalSlots> slots);
 
   void move_model();
+  void move_divided();
   void update_normals();
 
   Storage weights_;
   std::vector<Vec3> rest_, positions_;
   std::shared_ptr<const ColumnRule> rule_;
-  std::vector<Vec3> cage_; // as it is set
-  std::size_t moved_ = 0;  // how many vertices of it were moved since update()
+  std::vector<Vec3> cage_;  // as it is set
+  std::size_t moved_ = 0;   // how many vertices of it were moved since update()
+  bool is_divided_ = false; // positions_ were divided (see ColumnDivisor)
   std::vector<std::uint8_t> is_moved_;
   std::vector<Vec3> applied_; // the moves of the columns as positions_ shows them
   std::vector<Vec3> wanted_;  // and as the cage asks for
