@@ -1,7 +1,10 @@
 #include <cagewright/coordinates/kinds.h>
 
+#include <cagewright/coordinates/biharmonic.h>
 #include <cagewright/coordinates/green.h>
 #include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/positive_mean_value.h>
+#include <cagewright/coordinates/somigliana.h>
 
 #include <algorithm>
 #include <array>
@@ -15,7 +18,10 @@ namespace {
 // The registry. A kind is a header, a source, a line here and a test.
 constexpr std::array kinds = {
     &mean_value_kind,
+    &positive_mean_value_kind,
     &green_kind,
+    &biharmonic_kind,
+    &somigliana_kind,
 };
 
 constexpr std::array<std::string_view, 2> quad_words = {"center", "diagonal"};
