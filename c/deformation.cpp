@@ -3,6 +3,7 @@
 #include "deform_file.h"
 #include "handles.h"
 
+#include "report/coordinate_kinds.h"
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/deform/deformer.h>
 
@@ -141,6 +142,14 @@ cw_code cw_coordinate_columns(const char* kind, const char* settings, const cw_m
       return rule.error();
     }
     *columns = (*rule)->columns();
+    return success();
+  });
+}
+
+cw_code cw_coordinates_describe(char** out, cw_error** error) {
+  *out = nullptr;
+  return call(error, [&]() -> Status {
+    *out = handed_out(coordinate_kinds_as_json().dump());
     return success();
   });
 }

@@ -1,10 +1,10 @@
 #include "json.h"
+#include "report/coordinate_kinds.h"
 #include "session.h"
 
 #include <cagewright/coordinates/kinds.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <memory>
@@ -15,20 +15,19 @@ namespace cagewright::cli {
 namespace {
 
 struct Property {
-  std::string_view name;  ///< in JSON
-  std::string_view title; ///< for people
+  std::string_view title;
   std::string_view CoordinateKind::*value;
 };
 
 constexpr std::array<Property, 8> properties = {{
-    {"quads", "quads", &CoordinateKind::quads},
-    {"sign", "weights", &CoordinateKind::sign},
-    {"reproduces", "reproduces", &CoordinateKind::reproduces},
-    {"on_cage", "on the cage", &CoordinateKind::on_cage},
-    {"outside", "outside", &CoordinateKind::outside},
-    {"locality", "reach", &CoordinateKind::locality},
-    {"made_by", "made by", &CoordinateKind::made_by},
-    {"cost", "cost", &CoordinateKind::cost},
+    {"quads", &CoordinateKind::quads},
+    {"weights", &CoordinateKind::sign},
+    {"reproduces", &CoordinateKind::reproduces},
+    {"on the cage", &CoordinateKind::on_cage},
+    {"outside", &CoordinateKind::outside},
+    {"reach", &CoordinateKind::locality},
+    {"made by", &CoordinateKind::made_by},
+    {"cost", &CoordinateKind::cost},
 }};
 
 std::string as_text() {
@@ -46,43 +45,9 @@ std::string as_text() {
   return text;
 }
 
-nlohmann::json json_of(const CoordinateOption& option) {
-  nlohmann::json json = {{"name", option.name},
-                         {"help", option.help},
-                         {"default", initial_text(option)},
-                         {"while_posing", option.while_posing}};
-  if (option.words.empty()) {
-    json["default"] = option.initial;
-    json["least"] = option.least;
-    json["most"] = option.most;
-  } else {
-    json["words"] = option.words;
-  }
-  return json;
-}
-
-nlohmann::json as_json() {
-  nlohmann::json json = {{"format", "cagewright-coordinates"},
-                         {"version", 1},
-                         {"default", CoordinateSettings().kind().name},
-                         {"kinds", nlohmann::json::array()}};
-  for (const CoordinateKind* kind : coordinate_kinds()) {
-    nlohmann::json entry = {
-        {"name", kind->name}, {"idea", kind->idea}, {"options", nlohmann::json::array()}};
-    for (const Property& property : properties) {
-      entry[std::string(property.name)] = kind->*property.value;
-    }
-    for (const CoordinateOption* option : kind->options) {
-      entry["options"].push_back(json_of(*option));
-    }
-    json["kinds"].push_back(std::move(entry));
-  }
-  return json;
-}
-
 int run(const std::string& json, const Session& session) {
   if (!json.empty()) {
-    if (const Status written = write_json(json, as_json()); !written) {
+    if (const Status written = write_json(json, coordinate_kinds_as_json()); !written) {
       return fail(written.error());
     }
   }

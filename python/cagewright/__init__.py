@@ -13,7 +13,7 @@ library works; Ctrl-C is answered within half a second.
 """
 
 from ._cages import Cage, Verdict, Violation, check, compare, generate, info, options
-from ._deformation import CSR, Deformer, coordinates, deform_file
+from ._deformation import CSR, Deformer, coordinate_kinds, coordinates, deform_file
 from ._library import lib as _lib
 from ._meshes import Mesh, read_mesh, write_mesh
 from ._pictures import render
@@ -24,8 +24,9 @@ features = tuple(_lib.cw_features().decode().split())
 licence = _lib.cw_licence().decode()
 
 __all__ = ["CSR", "Cage", "Cancelled", "Deformer", "Error", "FileError", "InputError", "Mesh", "NoValidCage",
-           "NotAsAsked", "NotAvailable", "TooLarge", "Verdict", "Violation", "check", "compare", "coordinates",
-           "deform_file", "features", "generate", "info", "licence", "options", "read_mesh", "render", "write_mesh"]
+           "NotAsAsked", "NotAvailable", "TooLarge", "Verdict", "Violation", "check", "compare",
+           "coordinate_kinds", "coordinates", "deform_file", "features", "generate", "info", "licence", "options",
+           "read_mesh", "render", "write_mesh"]
 
 for _name in __all__:  # tracebacks and help() name what users see, not the file it is written in
     if getattr(globals()[_name], "__module__", "").startswith("cagewright."):

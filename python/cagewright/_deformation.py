@@ -33,6 +33,15 @@ class CSR(namedtuple("CSR", ["data", "indices", "indptr", "shape"])):
         return dense
 
 
+def coordinate_kinds():
+    """The kinds that coordinates() and Deformer take: a list of dicts with "name", "idea" (a sentence), "reproduces",
+    "outside", "cost" and more, and "options", each with "name", "help", "default" and "words", or "least" and "most".
+    """
+    out = ctypes.c_void_p()
+    checked(lib.cw_coordinates_describe, ctypes.byref(out))
+    return json.loads(take_text(out.value))["kinds"]
+
+
 def coordinates(kind, points, cage_vertices, cage_faces=None, *, sparse=False, threads=None, progress=None, **settings):
     """How much each point follows each vertex of a cage.
 

@@ -82,6 +82,10 @@ static void tells_what_it_is(void) {
   SUCCEEDS(cw_options_describe(&options, &error));
   EXPECT(strstr(options, "\"max-gap\"") != NULL);
   cw_free(options);
+  char* kinds = NULL;
+  SUCCEEDS(cw_coordinates_describe(&kinds, &error));
+  EXPECT(strstr(kinds, "\"mean_value\"") != NULL);
+  cw_free(kinds);
   cw_free(NULL);
   cw_error_free(NULL);
   cw_cage_free(NULL);

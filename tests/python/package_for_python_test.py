@@ -225,6 +225,15 @@ class Generate(InAFolder):
                 self.assertEqual(made.vertices.tobytes(), expected.vertices.tobytes())
                 self.assertEqual(made.corners.tolist(), expected.corners.tolist())
 
+    def test_kinds_of_coordinates_are_told(self):
+        kinds = cagewright.coordinate_kinds()
+        self.assertEqual(kinds[0]["name"], "mean_value")
+        for kind in kinds:
+            self.assertTrue(kind["idea"])
+            for option in kind["options"]:
+                self.assertTrue(option["help"])
+                self.assertTrue(option.get("words") or option["least"] < option["most"], option)
+
     def test_defaults_are_those_of_the_program(self):
         defaults = {item["name"]: item["default"] for item in cagewright.options()}
         signature = inspect.signature(cagewright.generate).parameters

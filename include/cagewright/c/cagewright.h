@@ -273,6 +273,10 @@ CW_API cw_code cw_coordinates(const char* kind, const char* settings, const cw_a
 CW_API cw_code cw_coordinate_columns(const char* kind, const char* settings,
                                      const cw_mesh_view* cage, size_t* columns, cw_error** error);
 
+/// All kinds of coordinates: JSON as of `cagewright coordinates --json`, {"default", "kinds"}, each
+/// kind with "name", "idea", "options" and more. To be freed with cw_free().
+CW_API cw_code cw_coordinates_describe(char** out, cw_error** error);
+
 /// A model bound to a cage, for moving it again and again.
 typedef struct cw_deformer cw_deformer;
 

@@ -1,0 +1,126 @@
+"""When bound models are brought up to date: whenever their cages have moved, by hand, by animation, or by undo."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import binding
+
+_bound = {}     # names of bound models, by the names of their cages
+_objects = -1   # how many objects the file had when they were gathered
+
+
+_paused = False
+
+
+class paused:
+    """While it lasts, models do not follow: what they show is being used for something else."""
+
+    def __enter__(self):
+        global _paused
+        _paused = True
+
+    def __exit__(self, *_):
+        global _paused
+        _paused = False
+
+
+def gather():
+    """Finds the bound models anew."""
+    global _objects
+    _bound.clear()
+    for model in binding.bound_models():
+        cage = model.cagewright.cage
+        if cage is None or not cage.users_scene:  # deleted
+            binding.unbind(model)
+            continue
+        binding.own_nodes(model)
+        _bound.setdefault(cage.name, []).append(model.name)
+    _objects = len(bpy.data.objects)
+
+
+def _models(cage_name):
+    for name in _bound.get(cage_name, ()):
+        model = bpy.data.objects.get(name)
+        if model is not None and binding.is_bound(model):
+            yield model
+
+
+def _deleted():
+    return any(cage is None or not cage.users_scene for cage in map(bpy.data.objects.get, _bound))
+
+
+@persistent
+def _after_update(scene, depsgraph):
+    if _paused:
+        return
+    if len(bpy.data.objects) != _objects or _deleted():
+        gather()
+        for model in _all():
+            binding.follow(model, depsgraph)
+        return
+    if not _bound:
+        return
+    moved = set()
+    for update in depsgraph.updates:
+        if isinstance(update.id, bpy.types.Object) and (update.is_updated_geometry or update.is_updated_transform):
+            moved.add(update.id.name)
+    for cage_name in list(_bound):
+        for model in _models(cage_name):
+            parent = bpy.data.objects[cage_name].parent
+            if cage_name in moved or (parent is None and model.name in moved):
+                binding.follow(model, depsgraph)
+
+
+def _all():
+    for cage_name in list(_bound):
+        yield from _models(cage_name)
+
+
+@persistent
+def _after_frame(scene, depsgraph=None):
+    if _bound:
+        depsgraph = depsgraph or bpy.context.evaluated_depsgraph_get()
+        for model in _all():
+            binding.follow(model, depsgraph)
+
+
+@persistent
+def _after_undo(scene, *_):
+    gather()
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    for model in _all():
+        binding.show_again(model)
+        binding.follow(model, depsgraph)
+
+
+@persistent
+def _after_load(*_):
+    binding.forget()
+    gather()
+    if _bound:
+        _after_frame(bpy.context.scene)
+
+
+_HANDLERS = [("depsgraph_update_post", _after_update), ("frame_change_post", _after_frame), ("undo_post", _after_undo),
+             ("redo_post", _after_undo), ("load_post", _after_load)]
+
+
+def _once_registered():
+    """Data cannot be read while add-ons are being registered."""
+    gather()
+    _after_frame(bpy.context.scene)
+
+
+def register():
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+    bpy.app.timers.register(_once_registered, first_interval=0)
+
+
+def unregister():
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
+    if bpy.app.timers.is_registered(_once_registered):
+        bpy.app.timers.unregister(_once_registered)
+    binding.forget()
+    _bound.clear()
