@@ -15,6 +15,13 @@ void add_generate(CLI::App& app, Session& session) {
   command->add_option("-o,--output", arguments->output, "OBJ, PLY, STL or OFF file to write")
       ->required();
   add_cage_options(*command, *arguments);
+  command
+      ->add_option("--start", arguments->start,
+                   "A cage of your own, made valid and tight by moving its vertices: one made by "
+                   "hand, or for an earlier state of the model. Its faces and the order of its "
+                   "vertices stay")
+      ->option_text("CAGE")
+      ->group(std::string(title_of(OptionGroup::cage)));
   add_pose_option(*command, arguments->choice);
   add_only_option(*command, arguments->choice,
                   "Make the cage for this object or group of the model");
@@ -60,6 +67,7 @@ void add_generate(CLI::App& app, Session& session) {
                   "within 2 %\n"
                   "  cagewright generate model.obj -o cage.obj --pieces apart   a closed surface "
                   "for each piece\n"
+                  "  cagewright generate model.obj -o cage.obj --start my_cage.obj\n"
                   "  cagewright generate model.obj -o boxes.obj --depth 4       the union of "
                   "oriented boxes\n");
   command->callback([arguments, &session] {

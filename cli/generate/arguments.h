@@ -24,6 +24,7 @@ struct GenerateArguments {
   std::string json;
   ModelChoice choice;
   Emit emit = Emit::cage;
+  std::string start;   ///< a file with a cage of the user's own, or empty
   std::string density; ///< a file, or "colors"; empty: even
   GenerateOptions options;
   std::vector<const CageOption*> given; ///< options on the command line

@@ -73,6 +73,13 @@ void imply_method(GenerateArguments& arguments) {
 std::string without_effect(const GenerateArguments& arguments) {
   std::string text;
   for (const CageOption* option : arguments.given) {
+    if (!arguments.start.empty()) {
+      if (option->name != "clearance") {
+        text +=
+            dashed(*option) + " makes no difference here: the cage keeps the faces of --start\n";
+      }
+      continue;
+    }
     const bool is_split_only = arguments.emit != Emit::cage && option->group == OptionGroup::boxes;
     if (!applies(*option, arguments.options) && !is_split_only) {
       text +=

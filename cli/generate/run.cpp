@@ -93,12 +93,14 @@ int emit_stage(const GenerateArguments& arguments, const Session& session,
 }
 
 int make_cage(const GenerateArguments& arguments, const Session& session, const TriangleMesh& model,
-              const std::vector<double>& density) {
+              const PolygonMesh* start, const std::vector<double>& density) {
   GenerateOptions options = arguments.options;
+  options.start = start;
   options.density = density;
   const Result<GeneratedCage> made = generate(model, options, session.progress());
   if (!made) {
-    return fail(in_file(arguments.model, made.error()));
+    const bool is_about_start = made.error().code == ErrorCode::invalid_cage;
+    return fail(in_file(is_about_start ? arguments.start : arguments.model, made.error()));
   }
   if (const Status written = write_outputs(arguments, made->faces, to_json(*made, options));
       !written) {
@@ -116,12 +118,13 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
 
 int run_generate(const GenerateArguments& arguments, const Session& session) {
   std::fputs(without_effect(arguments).c_str(), stderr);
-  if (const Status writable = can_write_cage(arguments.output, {arguments.model}); !writable) {
+  if (const Status writable = can_write_cage(arguments.output, {arguments.model, arguments.start});
+      !writable) {
     return fail(writable.error());
   }
   if (!arguments.json.empty()) {
-    const Status writable =
-        can_write_output(arguments.json, {arguments.model, arguments.output, arguments.density});
+    const Status writable = can_write_output(
+        arguments.json, {arguments.model, arguments.output, arguments.density, arguments.start});
     if (!writable) {
       return fail(writable.error());
     }
@@ -142,7 +145,15 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
     }
     density = std::move(*asked);
   }
-  return make_cage(arguments, session, model, density);
+  std::optional<PolygonMesh> start;
+  if (!arguments.start.empty()) {
+    Result<PolygonMesh> read = load_mesh(arguments.start);
+    if (!read) {
+      return fail(read.error());
+    }
+    start = std::move(*read);
+  }
+  return make_cage(arguments, session, model, start ? &*start : nullptr, density);
 }
 
 } // namespace cagewright::cli

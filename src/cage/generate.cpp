@@ -1,15 +1,16 @@
-// The whole pipeline on one page: what is asked for is checked; a cage of boxes is their union; any
-// other is one closed surface (surface.h), or one for each group of pieces that are apart
-// (piece_cages.h), by halves where the model is its own mirror image. Each surface goes from a
-// start (start.h) on its ground (ground.h) through triangles (triangle_stage.h) or quads
-// (quad_stage.h) to the exact check. All that is done on the canonical model (canonical_model.h),
-// and checked on the model itself.
+// The whole pipeline on one page: what is asked for is checked; a cage of the user's own is moved
+// (own_cage.h); a cage of boxes is their union; any other is one closed surface (surface.h), or one
+// for each group of pieces that are apart (piece_cages.h), by halves where the model is its own
+// mirror image. Each surface goes from a start (start.h) on its ground (ground.h) through triangles
+// (triangle_stage.h) or quads (quad_stage.h) to the exact check. All that is done on the canonical
+// model (canonical_model.h), and checked on the model itself.
 #include <cagewright/cage/generate.h>
 
 #include "cage/box_cage.h"
 #include "cage/budget.h"
 #include "cage/canonical_model.h"
 #include "cage/mirroring.h"
+#include "cage/own_cage.h"
 #include "cage/part_maker.h"
 #include "cage/piece_cages.h"
 #include "cage/stage_time.h"
@@ -36,17 +37,19 @@ Status check(TriangleView model, const GenerateOptions& options) {
   if (const Status in_range = check_ranges(options); !in_range) {
     return in_range;
   }
-  if (options.method == Method::boxes) {
+  if (options.method == Method::boxes && options.start == nullptr) {
     return success();
   }
-  if (vertices_allowed(options) == 0 && options.max_gap == 0) {
+  if (options.start == nullptr && vertices_allowed(options) == 0 && options.max_gap == 0) {
     return Error{ErrorCode::invalid_option,
                  "the cage needs a limit: give a number of vertices or faces, or a greatest gap"};
   }
   if (!options.density.empty() && options.density.size() != model.positions.size()) {
     return Error{ErrorCode::invalid_option, "there must be one density for each model vertex"};
   }
-  return options.max_gap == 0 ? success() : can_keep_gap(options.max_gap, options.clearance);
+  return options.max_gap == 0 || options.start != nullptr
+             ? success()
+             : can_keep_gap(options.max_gap, options.clearance);
 }
 
 Result<GeneratedCage> union_of_boxes(TriangleView model, const GenerateOptions& options,
@@ -226,6 +229,8 @@ std::string_view name_of(Reason reason) {
     return "not_mirrored";
   case Reason::pieces_joined:
     return "pieces_joined";
+  case Reason::start_changed:
+    return "start_changed";
   }
   return "unknown"; // no default above: the compiler points here when a reason is added
 }
@@ -240,7 +245,8 @@ Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& option
     return good.error();
   }
   const Progress making = progress.part(0, made_by);
-  Result<GeneratedCage> made = options.method == Method::boxes
+  Result<GeneratedCage> made = options.start != nullptr ? own_cage(model, options, making)
+                               : options.method == Method::boxes
                                    ? union_of_boxes(model, options, making)
                                    : improved_cage(model, options, making);
   if (!made) {

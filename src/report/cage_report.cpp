@@ -220,7 +220,7 @@ nlohmann::json to_json(const GeneratedCage& made, const GenerateOptions& options
   j["format"] = "cagewright-generate";
   j["version"] = 1;
   j["options"] = to_json(options);
-  j["method"] = method_name(made.method);
+  j["method"] = made.is_own ? "start" : method_name(made.method);
   j["start"] = {{"vertices", made.start_vertices},
                 {"envelope_resolution", made.resolution},
                 {"bridges", made.bridges}};
@@ -267,6 +267,9 @@ std::string summary(const GeneratedCage& made, const GenerateOptions& options) {
     text += fmt::format("  made from an envelope of {} voxels along the diagonal, {} vertices\n",
                         made.resolution, made.start_vertices);
   }
+  if (made.is_own) {
+    text += fmt::format("  made from the cage given, of {} vertices\n", made.start_vertices);
+  }
   if (made.bridges > 0 && made.method != Method::boxes) {
     text += fmt::format("  bridges between pieces of the model: {}\n", made.bridges);
   }
@@ -286,7 +289,10 @@ std::string summary(const GeneratedCage& made, const GenerateOptions& options) {
   if (!made.limb_rings.empty()) {
     text += fmt::format("  rings of edges round limbs: {}\n", made.limb_rings.size());
   }
-  if (!message_of(made, Reason::clearance_not_kept).empty()) {
+  if (const std::string changed = message_of(made, Reason::start_changed); !changed.empty()) {
+    text += "  " + changed + "\n";
+  }
+  if (!made.is_own && !message_of(made, Reason::clearance_not_kept).empty()) {
     text += fmt::format("  the boxes came nearer than the clearance asked for: {:.4f} % of the "
                         "diagonal was kept, not {:.4f} %\n",
                         100 * made.clearance, 100 * options.clearance);

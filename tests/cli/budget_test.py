@@ -101,6 +101,30 @@ class InAFolder(unittest.TestCase):
             self.assertIn(word, made.stderr)
 
 
+class OwnCage(InAFolder):
+    def test_is_made_valid_and_tight_with_its_faces(self):
+        self.generate("--vertices", 40)
+        tight = vertices_of(self.cage)
+        faces = [line for line in self.cage.read_text().splitlines() if line.startswith("f ")]
+        own = self.file("own.obj", "".join("v %.9g %.9g %.9g\n" % tuple(0.8 * x for x in v) for v in tight)
+                        + "\n".join(faces) + "\n")
+        self.assertEqual(run("check", self.model, own).returncode, COULD_NOT)
+        data, said = self.generate("--start", own)
+        self.assertEqual([line for line in self.cage.read_text().splitlines() if line.startswith("f ")], faces)
+        self.assertEqual(data["method"], "start")
+        self.assertIn("made from the cage given", said)
+        self.assertIn("makes no difference here", run("generate", self.model, "-o", self.cage, "--start", own,
+                                                      "--vertices", 9).stderr)
+
+    def test_that_no_moving_mends_is_refused_by_its_name(self):
+        own = self.file("own.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.expect_refusal("--start", own, says=["own.obj", "it is open: 3 edges"])
+        self.expect_refusal("--start", self.folder / "none.obj", says=["none.obj"])
+        same = run("generate", self.model, "-o", own, "--start", own)
+        self.assertEqual(same.returncode, BAD_INPUT)
+        self.assertIn("f 1 2 3", own.read_text())
+
+
 class Budget(InAFolder):
     def test_of_vertices_and_of_faces_is_kept(self):
         for options in (("--vertices", 40), ("--faces", 76), ("--vertices", 200, "--faces", 76),

@@ -2,6 +2,7 @@
 /// What can be asked of a cage.
 #pragma once
 
+#include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/slicing/slicing_rule.h>
 
 #include <optional>
@@ -54,6 +55,12 @@ struct GenerateOptions {
   /// must live as long as the call. See density.h.
   std::span<const double> density = {};
   int rounds = 6; ///< how often, at most, vertices are moved to where they pay; fewer is quicker
+
+  /// A cage of one's own, or null. If given its vertices are moved until it is valid and tight, by
+  /// hand-made cages that leave parts of the model outside, or after the model was edited; its
+  /// faces and the order of its vertices stay. Of the other options `clearance` and `density` are
+  /// heeded then. It must live as long as the call.
+  const PolygonMesh* start = nullptr;
 
   // Of the envelope.
 

@@ -35,6 +35,7 @@ enum class Reason {
   boxes_not_possible, ///< an envelope was taken where boxes were asked for
   not_mirrored,       ///< the cage is not its own mirror image
   pieces_joined,      ///< groups of pieces that are apart share a closed surface
+  start_changed,      ///< of the cage that was given to start from more than places was changed
 };
 
 /// As in JSON: "budget_not_reached".
@@ -64,6 +65,7 @@ struct GeneratedCage {
   // How it was made.
 
   Method method = Method::envelope; ///< what it was made from: see Reason::boxes_not_possible
+  bool is_own = false;              ///< it has the faces of GenerateOptions::start
   std::size_t start_vertices = 0;   ///< of the surface that was improved
   int resolution = 0;               ///< of the envelope: voxels along the model's diagonal
   int genus = 0;                    ///< of the envelope: its handles
