@@ -89,7 +89,46 @@ inline PatchPoint point_of_patch(const PolygonMesh& cage, std::size_t face, int 
   return point;
 }
 
-/// Points inside, at a distance in diagonals from the insides of patches.
+/// The patches as many small triangles, for what need not be exact.
+inline TriangleMesh finely_cut(const PolygonMesh& cage) {
+  constexpr Index pieces = 24;
+  TriangleMesh mesh;
+  for (std::size_t f = 0; f < cage.face_count(); ++f) {
+    const std::span<const Index> corners = cage.face(f);
+    const auto first = static_cast<Index>(mesh.positions.size());
+    if (corners.size() != 4) {
+      for (const Index v : corners) {
+        mesh.positions.push_back(cage.positions[v]);
+      }
+      for (Index k = 2; k < corners.size(); ++k) {
+        mesh.triangles.push_back({first, first + k - 1, first + k});
+      }
+      continue;
+    }
+    for (Index i = 0; i <= pieces; ++i) {
+      for (Index k = 0; k <= pieces; ++k) {
+        const double u = i / static_cast<double>(pieces);
+        const double v = k / static_cast<double>(pieces);
+        const std::array<double, 4> hats = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+        Vec3 p = Vec3::Zero();
+        for (std::size_t c = 0; c < 4; ++c) {
+          p += hats[c] * cage.positions[corners[c]];
+        }
+        mesh.positions.push_back(p);
+        if (i < pieces && k < pieces) {
+          const Index here = first + i * (pieces + 1) + k;
+          const Index next = here + pieces + 1; // one further along u
+          mesh.triangles.push_back({here, next, next + 1});
+          mesh.triangles.push_back({here, next + 1, here + 1});
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+/// Points inside, at a distance in diagonals from the insides of patches; outside if it is
+/// negative.
 inline std::vector<Vec3> points_by_patches(const PolygonMesh& cage, double distance,
                                            std::size_t count, std::uint64_t seed) {
   Random random(seed);
@@ -99,10 +138,15 @@ inline std::vector<Vec3> points_by_patches(const PolygonMesh& cage, double dista
       quads.push_back(f);
     }
   }
+  const TriangleMesh fine = finely_cut(cage);
+  constexpr double far = 5e-3; // where another patch may come between
   std::vector<Vec3> points;
   while (points.size() < count) {
     const PatchPoint on = point_of_patch(cage, quads[random.below(quads.size())], 0, random);
-    points.emplace_back(on.x - distance * diagonal(cage.positions) * on.normal);
+    const Vec3 x = on.x - distance * diagonal(cage.positions) * on.normal;
+    if (distance < far || is_inside(fine, x)) {
+      points.push_back(x);
+    }
   }
   return points;
 }
