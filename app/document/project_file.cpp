@@ -364,7 +364,7 @@ QJsonObject model_to_json(const Project& project, const fs::path& path) {
 
 } // namespace
 
-Status write_project(const Project& project, const fs::path& path) {
+QByteArray format_project(const Project& project, const fs::path& path) {
   QJsonObject json{{"format", "cagewright-project"}, {"version", version}};
   if (!project.model_path.empty()) {
     json["model"] = model_to_json(project, path);
@@ -405,7 +405,11 @@ Status write_project(const Project& project, const fs::path& path) {
   json["view"] = QJsonObject{{"camera", project.camera},
                              {"layers", fields_to_json(project.layers)},
                              {"tools", fields_to_json(project.tools)}};
-  const QByteArray bytes = QJsonDocument(json).toJson();
+  return QJsonDocument(json).toJson();
+}
+
+Status write_project(const Project& project, const fs::path& path) {
+  const QByteArray bytes = format_project(project, path);
   return write_file_atomically(path, {bytes.constData(), static_cast<std::size_t>(bytes.size())});
 }
 
@@ -414,8 +418,12 @@ Result<Project> read_project(const fs::path& path) {
   if (!file.open(QIODevice::ReadOnly)) {
     return Error{ErrorCode::cannot_open, path.string() + ": " + file.errorString().toStdString()};
   }
+  return parse_project(file.readAll(), path);
+}
+
+Result<Project> parse_project(const QByteArray& bytes, const fs::path& path) {
   QJsonParseError parse;
-  const QJsonObject json = QJsonDocument::fromJson(file.readAll(), &parse).object();
+  const QJsonObject json = QJsonDocument::fromJson(bytes, &parse).object();
   if (parse.error != QJsonParseError::NoError) {
     return malformed(path, parse.errorString().toStdString() + " at byte " +
                                std::to_string(parse.offset));

@@ -8,6 +8,7 @@
 #include "app/edit/tool_settings.h"
 #include <cagewright/core/result.h>
 
+#include <QByteArray>
 #include <QJsonObject>
 
 #include <cstdint>
@@ -43,5 +44,9 @@ Status write_project(const Project& project, const std::filesystem::path& path);
 /// Errors: cannot_open, malformed (no project, numbers out of range or that do not fit together),
 /// unsupported (of a later version).
 Result<Project> read_project(const std::filesystem::path& path);
+
+/// The bytes of such a file; `path` is where they are to be, or were read from.
+QByteArray format_project(const Project& project, const std::filesystem::path& path);
+Result<Project> parse_project(const QByteArray& bytes, const std::filesystem::path& path);
 
 } // namespace cagewright::app

@@ -17,6 +17,7 @@
 #include "cage/surface.h"
 #include "cage/triangle_stage.h"
 #include "cage/unit_frame.h"
+#include "mesh/topology.h"
 #include "quads/quads.h"
 #include <cagewright/cage/option_table.h>
 #include <cagewright/validate/validate_cage.h>
@@ -63,6 +64,7 @@ Result<GeneratedCage> union_of_boxes(TriangleView model, const GenerateOptions& 
   result.faces = std::move(made->faces);
   result.triangles = std::move(made->cage);
   result.start_vertices = result.triangles.positions.size();
+  result.pieces = static_cast<int>(topology(TriangleView(result.triangles)).components);
   result.bridges = made->made->boxes.bridges;
   result.box_tree = std::move(made->made);
   result.times = std::move(made->times);

@@ -429,16 +429,20 @@ Result<PointCounts> bind_to_file(const Coordinates& coordinates, const Coordinat
   return counts;
 }
 
-Result<StoredWeights> read_weights(const std::filesystem::path& path) {
-  Result<FileBytes> start = read_start(path);
-  if (!start) {
-    return start.error();
+namespace {
+
+/// An error of an archive in one line, whatever its name and its arrays hold, with what helps.
+Error told(Error error) {
+  const bool is_of_content =
+      error.code == ErrorCode::malformed || error.code == ErrorCode::unsupported;
+  if (is_of_content && error.message.find("; ") == error.message.npos) {
+    error.message += "; bind the model again";
   }
-  if (const auto format = text_weights_format(start->view())) {
-    const Result<FileBytes> bytes = read_file(path);
-    return bytes ? read_text_weights(bytes->view(), *format, one_line(path.string()))
-                 : bytes.error();
-  }
+  error.message = one_line(error.message);
+  return error;
+}
+
+Result<StoredWeights> read_archive(const std::filesystem::path& path) {
   Result<NpzReader> file = NpzReader::open(path);
   if (!file) {
     return file.error();
@@ -500,6 +504,22 @@ Result<StoredWeights> read_weights(const std::filesystem::path& path) {
   }
   stored.weights = *std::move(weights);
   return stored;
+}
+
+} // namespace
+
+Result<StoredWeights> read_weights(const std::filesystem::path& path) {
+  Result<FileBytes> start = read_start(path);
+  if (!start) {
+    return start.error();
+  }
+  if (const auto format = text_weights_format(start->view())) {
+    const Result<FileBytes> bytes = read_file(path);
+    return bytes ? read_text_weights(bytes->view(), *format, one_line(path.string()))
+                 : bytes.error();
+  }
+  Result<StoredWeights> stored = read_archive(path);
+  return stored ? std::move(stored) : told(stored.error());
 }
 
 Status belongs_to(const StoredWeights& stored, std::span<const Vec3> points,

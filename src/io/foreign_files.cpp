@@ -54,6 +54,22 @@ constexpr auto by_begin = std::to_array<Foreign>({
     {"AC3D", "an AC3D file"},
     {"\x89HDF", "an HDF5 file (Alembic files were such)"},
     {"Ogawa", "an Alembic file"},
+    {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+     "a SolidWorks or 3ds Max file (or another in Microsoft's container)"},
+    {"**ABCDEFGHIJKLM", "a Parasolid file",
+     "mesh it in a CAD program and export that as STL or OBJ"},
+    {"DBRep_Drawable", "a B-rep of Open CASCADE",
+     "mesh it in a CAD program and export that as STL or OBJ"},
+    {"AC10", "a DWG drawing"},
+    {"QC4DC4D", "a Cinema 4D file"},
+    {"*3DSMAX_ASCII", "an ASE file"},
+    {"LASF", "a point cloud (LAS)", "reconstruct a surface from it, and export that"},
+    {"# .PCD", "a point cloud (PCD)", "reconstruct a surface from it, and export that"},
+    {"\x93NUMPY", "a NumPy array", "choose the model"},
+    {"\xff\xfe\0\0"sv, "text in UTF-32", "save it as UTF-8"},
+    {"\0\0\xfe\xff"sv, "text in UTF-32", "save it as UTF-8"},
+    {"GIF8", "a picture (GIF)", "choose the model"},
+    {"RIFF", "a picture, sound or film (RIFF)", "choose the model"},
     {"\x89PNG", "a picture (PNG)", "choose the model"},
     {"\xff\xd8\xff", "a picture (JPEG)", "choose the model"},
     {"%PDF", "a PDF document", "choose the model"},
@@ -109,6 +125,9 @@ std::optional<Foreign> find_shaped(std::string_view bytes) {
   }
   if (bytes.size() >= 80 && bytes[72] == 'S' && bytes.substr(73, 7) == "      1") {
     return Foreign{"S", "an IGES file", "mesh it in a CAD program and export that as STL or OBJ"};
+  }
+  if (bytes.size() >= 262 && bytes.substr(257).starts_with("ustar")) {
+    return Foreign{"ustar", "a tar archive", unpack_it};
   }
   const std::size_t zero = bytes.find_first_not_of(" \t\r\n");
   if (zero < 16 && bytes.substr(zero).starts_with('0')) {

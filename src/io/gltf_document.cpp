@@ -174,6 +174,23 @@ Status check_extensions(const Source& source, const Json& json) {
   return success();
 }
 
+// Sizes and places are whole numbers from 0, where they are given at all.
+Status check_places(const Source& source, const Json& json) {
+  for (const char* list : {"accessors", "bufferViews", "buffers"}) {
+    const Json& items = member(json, list);
+    for (std::size_t i = 0; items.is_array() && i < items.size(); ++i) {
+      for (const char* name : {"byteOffset", "byteLength", "byteStride", "buffer"}) {
+        const Json& number = member(items[i], name);
+        if (!number.is_null() && !to_size(number)) {
+          return source.error(std::string(list) + '[' + std::to_string(i) + "]: '" + name +
+                              "' is no whole number from 0" + std::string(export_again));
+        }
+      }
+    }
+  }
+  return success();
+}
+
 // glTF's numbers for the types of components.
 enum class Component : std::uint16_t {
   int8 = 5120,
@@ -304,6 +321,9 @@ Result<GltfDocument> GltfDocument::open(const Source& source,
     return status.error();
   }
   if (const Status status = check_extensions(source, *json); !status) {
+    return status.error();
+  }
+  if (const Status status = check_places(source, *json); !status) {
     return status.error();
   }
   GltfDocument document;

@@ -64,7 +64,9 @@ Result<ModelFile> ModelFile::parse(std::string bytes, MeshFormat format, std::st
 }
 
 void ModelFile::hold(FileBytes bytes) {
-  if (const std::optional<std::string> text = text_from_utf16(bytes.view())) {
+  // The free text at the head of a binary STL file may begin like UTF-16.
+  const bool is_binary = format_of_content(bytes.view()) == MeshFormat::stl;
+  if (const auto text = is_binary ? std::nullopt : text_from_utf16(bytes.view())) {
     bytes = FileBytes(*text);
     notes_.push_back({"utf16", one_line(name_) + ": is text in UTF-16; read as such"});
   }

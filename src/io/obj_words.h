@@ -26,6 +26,14 @@ constexpr bool is_obj_list(std::string_view keyword) {
   return std::find(lists.begin(), lists.end(), keyword) != lists.end();
 }
 
+/// Statements that say how things are drawn or where they come from, and change no shape.
+constexpr bool is_obj_setting(std::string_view keyword) {
+  constexpr auto settings = std::to_array<std::string_view>(
+      {"usemap", "maplib", "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj",
+       "call", "csh", "mg", "res", "bzp", "bsp", "cdc", "cdp", "sharp", "newmtl"});
+  return std::find(settings.begin(), settings.end(), keyword) != settings.end();
+}
+
 /// The keyword at the cursor. From here to the end of the statement a backslash carries the line on
 /// only where a list of numbers goes on. After next_line() it is text again: set_backslash().
 inline std::string_view begin_obj_statement(TextCursor& cursor) {

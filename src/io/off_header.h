@@ -27,7 +27,7 @@ struct OffHeaderWord {
 constexpr std::optional<OffHeaderWord> off_header(std::string_view word) {
   OffHeaderWord found;
   std::string_view left = word;
-  while (!left.starts_with("OFF")) {
+  while (!left.starts_with("OFF") && !left.starts_with("off")) {
     if (left.starts_with("ST")) {
       found.header.has_texture = true;
       left.remove_prefix(1);

@@ -55,7 +55,7 @@ private:
 
   [[nodiscard]] std::string name_of_scene(std::size_t index) const {
     const std::string name = to_text(member(scenes()[index], "name"));
-    return name.empty() ? std::to_string(index) : in_quotes(name);
+    return "scene " + (name.empty() ? std::to_string(index) : in_quotes(name));
   }
 
   // Only scenes that show something else are worth a word.
@@ -72,7 +72,7 @@ private:
       others_ = others + (count > most_named ? " and more" : "");
       scene_.notes.add(
           "other_scenes", [&] { return one_line(source_.name); },
-          "the scene " + name_of_scene(shown) + " is read; left out are " + others_);
+          name_of_scene(shown) + " is read; left out: " + others_);
     }
   }
 
@@ -191,6 +191,9 @@ private:
     }
     const Json& attributes = member(primitive, "attributes");
     const std::optional<std::size_t> accessor = to_size(member(attributes, "POSITION"));
+    if (!accessor && !member(attributes, "POSITION").is_null()) {
+      return source_.error(where + " has positions that do not exist" + std::string(export_again));
+    }
     if (!accessor) {
       return success(); // allowed: extensions may give the positions
     }
@@ -210,6 +213,12 @@ private:
     if (mesh_.corners().size() + 3 * indices->size() > most_corners(source_)) {
       return source_.error("shows more than 22 million triangles; simplify the model",
                            ErrorCode::too_large);
+    }
+    if (mode == 4 && indices->size() % 3 != 0) {
+      scene_.notes.add(
+          "odd_corners", [&] { return one_line(source_.name) + ": " + where; },
+          "has " + counted(indices->size(), "corner") +
+              ", which make no whole triangles; what is left over is left out");
     }
     add_triangles(*indices, static_cast<Mode>(mode), scene_.placements[*placement]);
     scene_.shown.push_back(

@@ -74,9 +74,17 @@ private:
       }
     } else {
       if (keyword.find('\0') != keyword.npos) {
-        return source_.error_in_line(begin, not_obj(begin));
+        return source_.error_in_line(begin, in_quotes(keyword) +
+                                                " is no OBJ statement: there are "
+                                                "zeros in the text, as damaged files have them" +
+                                                std::string(export_again));
       }
       unknown_ = unknown_.value_or(begin); // extensions exist: wait whether faces come
+      if (!keyword.empty() && !is_obj_setting(keyword)) {
+        reading_.notes.add(
+            "unknown_statement", [&] { return source_.place_in_line(begin); },
+            in_quotes(keyword) + " is no OBJ statement; its line is left out");
+      }
     }
     return success();
   }

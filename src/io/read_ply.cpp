@@ -47,7 +47,11 @@ public:
     const auto vertices =
         std::find_if(header_.elements.begin(), header_.elements.end(),
                      [](const PlyElement& element) { return element.name == "vertex"; });
-    vertices_ = vertices != header_.elements.end() ? vertices->count : 0;
+    if (vertices == header_.elements.end()) {
+      return source_.error("the header has no element 'vertex'; check that this is a model" +
+                           std::string(", or export it again"));
+    }
+    vertices_ = vertices->count;
     if (vertices_ > std::numeric_limits<Index>::max()) {
       return too_many_vertices(source_, vertices_);
     }

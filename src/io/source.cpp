@@ -86,7 +86,41 @@ bool has_thousands_separators(std::string_view digits) {
   return separator == ',' || separator == '.' || separator == '\'';
 }
 
+namespace {
+
+// Signs beside those of numbers that programs write which follow the customs of a language.
+struct Sign {
+  std::string_view bytes;
+  std::string_view what;
+};
+constexpr Sign signs_of_typesetting[] = {
+    {"\xe2\x88\x92", "a minus of typesetting (U+2212); replace it by '-' in the file"},
+    {"\xe2\x80\x93", "a dash (U+2013); replace it by '-' in the file"},
+    {"\xc2\xa0", "a no-break space (U+00A0); replace it by a blank, or remove it within numbers"},
+    {"\xe2\x80\xaf",
+     "a no-break space (U+202F); replace it by a blank, or remove it within numbers"},
+    {"\xe2\x80\x89", "a thin space (U+2009); replace it by a blank, or remove it within numbers"},
+};
+
+} // namespace
+
 std::string not_a_number(std::string_view word) {
+  for (const Sign& sign : signs_of_typesetting) {
+    if (word.find(sign.bytes) != word.npos) {
+      return in_quotes(word) + " has " + std::string(sign.what);
+    }
+  }
+  if (has_thousands_separators(word) && word.find(',') == word.npos) {
+    const std::string signs = word.find('.') != word.npos ? "dots" : "apostrophes";
+    return in_quotes(word) + " has thousands separators; remove the " + signs +
+           " within numbers, or export without grouping of digits (exporting with the same setting "
+           "gives the same file)";
+  }
+  if (word.find(';') != word.npos && word.find_first_not_of("0123456789+-.eE;") == word.npos) {
+    return in_quotes(word) +
+           " is not a finite number: numbers are separated by blanks; replace ';' "
+           "by ' ' in the file";
+  }
   const auto commas = std::ranges::count(word, ',');
   const bool is_numeric = word.find_first_not_of("0123456789+-.,eEdD") == word.npos &&
                           word.find_first_of("0123456789") != word.npos;

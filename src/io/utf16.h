@@ -2,6 +2,8 @@
 /// Text in UTF-16, as Windows programs and PowerShell's redirection write it.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,11 +11,30 @@
 
 namespace cagewright {
 
-/// The text as UTF-8 if the bytes begin with the mark of UTF-16 (either byte order); none for other
-/// bytes. Halves of pairs without the other half become U+FFFD. Cost: O(bytes).
+/// Whether each second byte is zero, and the others are those of a text in ASCII: of UTF-16 without
+/// its mark. \param zero  which byte of two is zero
+inline bool is_unmarked_utf16(std::string_view bytes, std::size_t zero) {
+  constexpr std::size_t looked_at = 256; // more than the head of any binary file
+  const std::size_t count = std::min(bytes.size(), looked_at);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto byte = static_cast<unsigned char>(bytes[i]);
+    const bool is_text = (byte >= 0x20 && byte < 0x7f) || (byte >= '\t' && byte <= '\r');
+    if (i % 2 == zero ? byte != 0 : !is_text) {
+      return false;
+    }
+  }
+  return count >= 4;
+}
+
+/// The text as UTF-8 if the bytes are text in UTF-16 (either byte order), told by its mark or by
+/// its zeros; none for other bytes. Halves of pairs without the other half become U+FFFD. Cost:
+/// O(bytes).
 inline std::optional<std::string> text_from_utf16(std::string_view bytes) {
-  const bool little = bytes.starts_with("\xff\xfe");
-  if (!little && !bytes.starts_with("\xfe\xff")) {
+  using namespace std::string_view_literals;
+  const bool marked_little = bytes.starts_with("\xff\xfe") && !bytes.starts_with("\xff\xfe\0\0"sv);
+  const bool is_marked = marked_little || bytes.starts_with("\xfe\xff");
+  const bool little = marked_little || is_unmarked_utf16(bytes, 1);
+  if (!is_marked && !little && !is_unmarked_utf16(bytes, 0)) {
     return std::nullopt;
   }
   const auto unit = [&](std::size_t i) {
@@ -23,7 +44,7 @@ inline std::optional<std::string> text_from_utf16(std::string_view bytes) {
   };
   std::string text;
   text.reserve(bytes.size() / 2);
-  for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+  for (std::size_t i = is_marked ? 2 : 0; i + 1 < bytes.size(); i += 2) {
     std::uint32_t code = unit(i);
     if (code >= 0xd800 && code < 0xdc00 && i + 3 < bytes.size() && unit(i + 2) >= 0xdc00 &&
         unit(i + 2) < 0xe000) {

@@ -32,6 +32,24 @@ TEST(Generate, MakesAHundredVerticesUnlessToldOtherwise) {
   EXPECT_EQ(vertex_limit({.max_gap = 0.01}), 0);
 }
 
+TEST(Generate, CountsTheSurfacesThatBoxesMake) {
+  TriangleMesh model = make_cube();
+  const TriangleMesh cube = model;
+  for (const Vec3& p : cube.positions) {
+    model.positions.push_back(p + Vec3(20, 0, 0));
+  }
+  for (const Triangle& t : cube.triangles) {
+    model.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  }
+  GenerateOptions options = quick(40);
+  options.method = Method::boxes;
+  options.pieces = Pieces::apart;
+  const Result<GeneratedCage> made = generate(model, options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->pieces, 2);
+  EXPECT_TRUE(validate_cage(made->faces, model, {.allow_pieces = made->pieces > 1})->valid());
+}
+
 TEST(Generate, SaysHowTheCageWasMade) {
   const TriangleMesh model = make_torus(0.3, 24, 12);
   for (const Method method : {Method::envelope, Method::boxes, Method::boxes_improved}) {

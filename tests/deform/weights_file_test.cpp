@@ -197,13 +197,22 @@ TEST_F(WeightsFile, NeverCrashesOnDamage) {
   }
 }
 
+TEST_F(WeightsFile, IsRefusedInOneLineWhateverItHolds) {
+  bind();
+  std::string damaged = bytes();
+  damaged[damaged.find("'<i8'") + 2] = '\n'; // the type of an array
+  overwrite(damaged);
+  EXPECT_EQ(refusal(), path_.string() + ": array 'version' is not as expected (one value of type "
+                                        "<?8); bind the model again");
+}
+
 TEST_F(WeightsFile, SaysWhatItIsNot) {
   overwrite("this is text");
-  EXPECT_EQ(refusal(),
-            path_.string() + ": not a .npz file, or cut off: it does not end with a zip directory");
+  EXPECT_EQ(refusal(), path_.string() + ": not a .npz file, or cut off: it does not end with a zip "
+                                        "directory; bind the model again");
   overwrite(std::string("PK\5\6", 4) + std::string(18, '\0')); // an empty archive
-  EXPECT_EQ(refusal(),
-            path_.string() + ": not a weights file of cagewright bind: it has no array 'version'");
+  EXPECT_EQ(refusal(), path_.string() + ": not a weights file of cagewright bind: it has no array "
+                                        "'version'; bind the model again");
   overwrite("PK\5\6 and no more");
   EXPECT_NE(refusal(), "accepted");
   overwrite("PK\5\6");

@@ -273,10 +273,10 @@ TEST(ReadGltf, SaysWhatOfTheFileIsLeftOut) {
   ASSERT_EQ(file->notes().size(), 2U);
   EXPECT_EQ(file->notes()[0].message,
             "file: mesh 0, primitive 1: draws points or lines, which are left out (and 1 more)");
-  EXPECT_EQ(file->notes()[1].message, "file: the scene 'day' is read; left out are 'night'");
+  EXPECT_EQ(file->notes()[1].message, "file: scene 'day' is read; left out: scene 'night'");
   parts.more = R"(,"scene":1)";
   EXPECT_EQ(message_of(parts),
-            "file: has no faces in its scene; make another the default one ('day')");
+            "file: has no faces in its scene; make another the default one (scene 'day')");
 }
 
 TEST(ReadGltf, DoesNotLookForBuffersElsewhere) {
