@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,7 @@ using namespace cagewright::c;
 struct cw_options {
   GenerateOptions options;
   std::vector<double> density;
+  std::optional<PolygonMesh> start;
 };
 
 struct cw_cage {
@@ -76,6 +78,9 @@ Status make_cage(const cw_mesh_view* model, const cw_options* asked, const Progr
                                             " vertices; give one for each"};
     }
     options.density = asked->density;
+  }
+  if (asked != nullptr && asked->start) {
+    options.start = &*asked->start;
   }
   Result<GeneratedCage> made = generate(mesh->triangles(), options, progress);
   if (!made) {
@@ -180,6 +185,17 @@ cw_code cw_options_set_density(cw_options* options, const cw_array* weights, cw_
       return density.error();
     }
     options->density = std::move(*density);
+    return success();
+  });
+}
+
+cw_code cw_options_set_start(cw_options* options, const cw_mesh_view* cage, cw_error** error) {
+  return call(error, [&]() -> Status {
+    const Result<MeshArgument> mesh = MeshArgument::of(cage, "the cage to start from");
+    if (!mesh) {
+      return mesh.error();
+    }
+    options->start = mesh->polygons();
     return success();
   });
 }

@@ -11,7 +11,7 @@ from . import _arrays
 from ._calls import run
 from ._library import Handle, MeshView, checked, lib, take_text
 from ._meshes import Mesh, arrays_of
-from .errors import NotAsAsked, error_of
+from .errors import NotAsAsked
 
 
 class _Default(int):
@@ -94,7 +94,9 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
         symmetry: "auto" (mirrored where the model is), "off", or "x", "y", "z".
         pieces: of a model in pieces: "together" in one cage, or "apart" in one each.
         density: V weights above 0: four times the weight makes edges half as long there.
-        start: a cage to begin with; not in this version.
+        start: a cage of your own, made by hand or for an earlier state of the model: an object with vertices and faces,
+            or a pair of them. Its vertices are moved until it is valid and tight; its faces and the order of its
+            vertices stay. Only clearance and density are heeded then.
         threads: at most so many; None: all cores. The cage is the same on any number.
         progress: called with a fraction from 0 to 1 and the name of the step; stops the work by returning False.
         options: any other of options(), such as depth=4, rounds=3, envelope_resolution=80.
@@ -116,8 +118,6 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
     >>> cage = cagewright.generate(V, F, num_vertices=60, quads=True)
     >>> cagewright.write_mesh("cage.obj", *cage)
     """
-    if start is not None:
-        raise error_of("unsupported", "start: this version cannot begin with a cage of your own; leave it out")
     vertices, faces = _arrays.two_parts(vertices, faces, "the model")
     model = _arrays.mesh_view(vertices, faces, "the model")
     given = {name: value for name, value in options.items() if value is not None}
@@ -133,6 +133,10 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
     if density is not None:
         weights, _keep = _arrays.array_of(np.ravel(density), "the density")
         checked(lib.cw_options_set_density, asked.pointer, ctypes.byref(weights))
+    if start is not None:
+        pair = start if isinstance(start, (tuple, list)) and len(start) == 2 else (start, None)
+        own = _arrays.mesh_view(*_arrays.two_parts(*pair, "start"), "start")
+        checked(lib.cw_options_set_start, asked.pointer, ctypes.byref(own))
 
     def work(control):
         out = ctypes.c_void_p()

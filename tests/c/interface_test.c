@@ -261,6 +261,22 @@ static void refuses_options(const cw_mesh_view* model) {
   cw_options_free(options);
 }
 
+static void keeps_the_faces_of_a_cage_given(const cw_mesh_view* model) {
+  const double corners[] = {9, 9, 9, -9, -9, 9, -9, 9, -9, 9, -9, -9};
+  const int32_t faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  const cw_mesh_view own = {{corners, CW_FLOAT64, 4, 3, 0, 0}, {faces, CW_INT32, 4, 3, 0, 0}, {0}};
+  cw_options* const options = cw_options_new();
+  SUCCEEDS(cw_options_set_start(options, &own, &error));
+  cw_cage* cage = NULL;
+  SUCCEEDS(cw_generate(model, options, NULL, &cage, &error));
+  EXPECT(strstr(cw_cage_report(cage), "\"method\": \"start\"") != NULL);
+  cw_cage_free(cage);
+  const cw_mesh_view open = {own.positions, {faces, CW_INT32, 3, 3, 0, 0}, {0}};
+  SUCCEEDS(cw_options_set_start(options, &open, &error));
+  FAILS(cw_generate(model, options, NULL, &cage, &error), CW_INVALID_CAGE, "open");
+  cw_options_free(options);
+}
+
 static void deforms(const cw_mesh* mesh, const cw_cage* cage, const char* model_path,
                     const char* folder) {
   const cw_mesh_view model = cw_mesh_as_view(mesh);
@@ -470,6 +486,7 @@ int main(int argc, char** argv) {
     reads_arrays_where_they_are(mesh);
     stops_when_asked(&model);
     refuses_options(&model);
+    keeps_the_faces_of_a_cage_given(&model);
     deforms(mesh, cage, path, argv[1]);
     draws(&model);
     is_for_many_threads(&model, cage);

@@ -246,6 +246,18 @@ class Generate(InAFolder):
                                            "method", "symmetry", "pieces", "density", "start", "threads", "progress",
                                            "options"])
 
+    def test_begins_with_a_cage_of_ones_own(self):
+        small = (CAGE.vertices - CAGE.vertices.mean(0)) * 0.8 + CAGE.vertices.mean(0)
+        self.assertFalse(cagewright.check(V, F, small, CAGE.faces))
+        made = cagewright.generate(V, F, start=(small, CAGE.faces))
+        self.assertTrue(cagewright.check(V, F, made))
+        self.assertEqual(made.faces.tolist(), CAGE.faces.tolist())
+        self.assertEqual(cagewright.generate(V, F, start=CAGE).corners.tolist(), CAGE.corners.tolist())
+        with self.assertRaisesRegex(ValueError, "it is open"):
+            cagewright.generate(V, F, start=(small, CAGE.faces[1:]))
+        with self.assertRaisesRegex(TypeError, "start: faces are missing"):
+            cagewright.generate(V, F, start=small)
+
     def test_same_on_any_number_of_threads(self):
         cage = cagewright.generate(V, F, threads=1, **QUICK)
         self.assertEqual(cage.vertices.tobytes(), CAGE.vertices.tobytes())

@@ -201,6 +201,12 @@ CW_API cw_code cw_options_set(cw_options* options, const char* name, const char*
 CW_API cw_code cw_options_set_density(cw_options* options, const cw_array* weights,
                                       cw_error** error);
 
+/// A cage of one's own: its vertices are moved until it is valid and tight, its faces and the order
+/// of its vertices stay. Of the other options only the clearance and the density are heeded then.
+/// The numbers are copied.
+CW_API cw_code cw_options_set_start(cw_options* options, const cw_mesh_view* cage,
+                                    cw_error** error);
+
 /// All options: a JSON array of {"name", "label", "help", "group", "values", "default"}. To be
 /// freed with cw_free().
 CW_API cw_code cw_options_describe(char** out, cw_error** error);
