@@ -37,8 +37,8 @@ def coordinate_kinds():
     """The kinds that coordinates() and Deformer take: a list of dicts with "name", "idea" (a sentence), "reproduces",
     "outside", "cost" and more, and "options", each with "name", "help", "default" and "words", or "least" and "most".
 
-    >>> [kind["name"] for kind in cagewright.coordinate_kinds()][:2]
-    ['mean_value', 'green']
+    >>> cagewright.coordinate_kinds()[0]["name"]
+    'mean_value'
     """
     out = ctypes.c_void_p()
     checked(lib.cw_coordinates_describe, ctypes.byref(out))
