@@ -1,8 +1,11 @@
 #include "binding.h"
+#include "json.h"
 #include "load.h"
+#include "report/following.h"
 #include "session.h"
 
 #include "io/source.h"
+#include <cagewright/deform/following.h>
 #include <cagewright/deform/weights_file.h>
 
 #include <fmt/format.h>
@@ -19,6 +22,7 @@ namespace {
 struct Options {
   BindingOptions binding;
   std::string output;
+  std::string json;
   std::optional<WeightsFormat> format; // none: as the output's extension says
 };
 
@@ -33,6 +37,35 @@ Result<WeightsFormat> format_of(const Options& options) {
   return Error{ErrorCode::invalid_option,
                one_line(options.output) + ": the extension names no format of weights; use .npz, "
                                           ".csv, .json or .dmat, or say --format"};
+}
+
+/// What --json says of a binding. Errors: cancelled, cannot_write.
+Status write_report(const Options& options, const CoordinateSettings& settings,
+                    const ModelAndCage& meshes, const Coordinates& coordinates,
+                    const PointCounts& counts, const Session& session) {
+  const std::vector<Vec3>& points = meshes.bound.mesh.positions;
+  const Result<UnseenShare> unseen =
+      unseen_share(meshes.cage, coordinates, points, session.progress());
+  if (!unseen) {
+    return unseen.error();
+  }
+  const double bound = coordinates.error_bound();
+  return write_json(options.json,
+                    {{"format", "cagewright-bind"},
+                     {"version", 1},
+                     {"model", options.binding.model},
+                     {"cage", options.binding.cage},
+                     {"output", options.output},
+                     {"coordinates", settings.kind().name},
+                     {"options", settings.text()},
+                     {"points", points.size()},
+                     {"columns", coordinates.columns()},
+                     {"on_cage", counts.on_surface},
+                     {"outside", counts.outside},
+                     {"undefined", counts.undefined},
+                     {"error_bound", bound > 0 ? nlohmann::json(bound) : nlohmann::json(nullptr)},
+                     {"unseen_share", json_of(*unseen)},
+                     {"notes", notes_as_json()}});
 }
 
 int run(const Options& options, const Session& session) {
@@ -73,6 +106,13 @@ int run(const Options& options, const Session& session) {
                             (*coordinates)->error_bound()));
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  if (!options.json.empty()) {
+    if (const Status written =
+            write_report(options, *settings, *meshes, **coordinates, *counts, session);
+        !written) {
+      return fail(written.error());
+    }
+  }
   session.say(fmt::format("{}: {} model vertices bound to {} cage vertices in {:.2f} s\n",
                           options.output, meshes->bound.mesh.positions.size(),
                           meshes->cage.positions.size(), seconds.count()));
@@ -102,6 +142,9 @@ void add_bind(CLI::App& app, Session& session) {
                                                {"dmat", WeightsFormat::dmat},
                                                {"vertex-groups", WeightsFormat::vertex_groups}}))
       ->option_text("FORMAT");
+  command->add_option("--json", options->json,
+                      "Write to this file as JSON what was bound, and how much of the weights "
+                      "belongs to vertices of the cage that points do not see");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };
   });

@@ -87,6 +87,10 @@ const std::vector<Row>& rows() {
        [](const ComparedCage& c) { return pose_cell(c, StandardPose::twist, &PoseError::mean); }},
       {"twist: greatest %",
        [](const ComparedCage& c) { return pose_cell(c, StandardPose::twist, &PoseError::max); }},
+      {"pull of unseen vertices %",
+       [](const ComparedCage& c) -> std::string {
+         return c.poses ? fmt::format("{:.2f}", 100 * c.unseen.mean) : "-";
+       }},
   };
   return table;
 }

@@ -1,15 +1,19 @@
 #include "binding.h"
+#include "json.h"
 #include "load.h"
 #include "session.h"
 
 #include "deform/apply.h"
 #include "io/source.h"
+#include "report/following.h"
+#include <cagewright/deform/following.h>
 #include <cagewright/deform/match_pose.h>
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
 #include <cagewright/io/model_file.h>
 #include <cagewright/mesh/measures.h>
+#include <cagewright/mesh/triangulate.h>
 
 #include <fmt/format.h>
 #include <glob.h>
@@ -35,6 +39,7 @@ struct Options {
   std::vector<std::string> poses;
   std::string output;
   std::string weights;
+  std::string json;
 };
 
 struct Pose {
@@ -236,6 +241,19 @@ std::string summary(std::span<const Vec3> rest, std::span<const Vec3> positions,
                      moved, rest.size(), 100 * farthest / diagonal(rest));
 }
 
+/// The figures of one pose.
+nlohmann::json figures_of(TriangleView rest, std::span<const Vec3> positions, const Pose& pose) {
+  nlohmann::json json = json_of(deformed_figures(rest, positions));
+  double farthest = 0;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    farthest = std::max(farthest, (positions[v] - rest.positions[v]).norm());
+  }
+  json["deformed_cage"] = pose.path;
+  json["output"] = pose.output;
+  json["farthest_move"] = farthest;
+  return json;
+}
+
 /// Once for each folder of a sequence.
 void warn_of_links(const ModelFile& model, const std::vector<Pose>& poses) {
   std::set<fs::path> told;
@@ -300,6 +318,9 @@ int run(const Options& options, const Session& session) {
     normals = NormalField(file.mesh(), {stored_normals->of_corner, stored_normals->normals.size(),
                                         stored_normals->normals});
   }
+  nlohmann::json figures = nlohmann::json::array();
+  const TriangleMesh triangles =
+      options.json.empty() ? TriangleMesh() : to_triangle_mesh(file.mesh());
   for (std::size_t i = 0; i < poses->size(); ++i) {
     keep_others(rest, meshes->bound.vertices, (*results)[i]);
     normals.update((*results)[i]);
@@ -311,9 +332,23 @@ int run(const Options& options, const Session& session) {
     if (i == 0) { // the others of a sequence lose the same
       tell(*notes);
     }
+    if (!options.json.empty()) {
+      figures.push_back(figures_of(triangles, (*results)[i], (*poses)[i]));
+    }
     session.say(summary(rest, (*results)[i], (*poses)[i].output));
   }
   warn_of_links(file, *poses);
+  if (!options.json.empty()) {
+    if (const Status written = write_json(options.json, {{"format", "cagewright-deform"},
+                                                         {"version", 1},
+                                                         {"model", options.binding.model},
+                                                         {"cage", options.binding.cage},
+                                                         {"poses", std::move(figures)},
+                                                         {"notes", notes_as_json()}});
+        !written) {
+      return fail(written.error());
+    }
+  }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   session.say(fmt::format("{:.2f} s in all\n", seconds.count()));
   return done;
@@ -336,6 +371,9 @@ void add_deform(CLI::App& app, Session& session) {
                    "or a name with * for the name of the deformed cage")
       ->required();
   command->add_option("--weights", options->weights, "Use the weights that bind has stored");
+  command->add_option("--json", options->json,
+                      "Write to this file as JSON what became of the model in each pose: stretch, "
+                      "change of volume, triangles that were flipped");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };
   });

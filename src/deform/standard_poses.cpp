@@ -83,15 +83,22 @@ Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> mo
   if (!coordinates) {
     return coordinates.error();
   }
-  const std::size_t columns = (*coordinates)->columns();
+  return pose_errors(**coordinates, model, progress.part(0.2, 1));
+}
+
+Result<PoseErrors> pose_errors(const Coordinates& coordinates, std::span<const Vec3> model,
+                               const Progress& progress) {
+  PoseErrors errors;
+  const std::size_t columns = coordinates.columns();
   const PoseFrame frame = pose_frame(model);
   std::vector<PosedColumns> poses;
   for (const StandardPose kind : standard_poses) {
     std::vector<Vec3> pose;
-    for (const Vec3& c : cage.positions) {
+    for (const Vec3& c : coordinates.rule()->cage_at_rest()) {
       pose.push_back(posed(kind, frame, c));
     }
-    poses.emplace_back(*(*coordinates)->rule(), pose);
+    poses.emplace_back(*coordinates.rule(), pose);
+    errors.followed[static_cast<std::size_t>(kind)].resize(model.size());
   }
   const std::size_t tiles = (model.size() + tile_points - 1) / tile_points;
   const Sums sums = parallel_reduce_ordered(
@@ -102,11 +109,11 @@ Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> mo
         for (std::size_t t = first; t < last && !progress.cancelled(); ++t) {
           const auto points =
               model.subspan(t * tile_points, std::min(tile_points, model.size() - t * tile_points));
-          found.counts.add((*coordinates)->solve(points, weights.span()));
-          std::array<Vec3, tile_points> followed;
+          found.counts.add(coordinates.solve(points, weights.span()));
           for (std::size_t k = 0; k < poses.size(); ++k) {
-            move_sixteen(weights.span(), poses[k], points,
-                         std::span(followed).first(points.size()));
+            const auto followed =
+                std::span(errors.followed[k]).subspan(t * tile_points, points.size());
+            move_sixteen(weights.span(), poses[k], points, followed);
             for (std::size_t i = 0; i < points.size(); ++i) {
               const double error =
                   (followed[i] - posed(standard_poses[k], frame, points[i])).norm();
@@ -127,7 +134,6 @@ Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> mo
   if (progress.cancelled()) {
     return Error::cancelled();
   }
-  PoseErrors errors;
   errors.undefined = sums.counts.undefined;
   errors.outside = sums.counts.outside;
   const double unit = diagonal(model);

@@ -1,10 +1,42 @@
 #include "report/compared_cage.h"
 
 #include "report/cage_figures.h"
+#include "report/following.h"
 
 #include <utility>
 
 namespace cagewright {
+namespace {
+
+/// How well the model follows; an error only if it was cancelled.
+Status try_poses(const PolygonMesh& cage, TriangleView model, CoordinateSettings settings,
+                 const Progress& progress, ComparedCage& compared) {
+  const auto passed = [](const Error& error) {
+    return error.code == ErrorCode::cancelled ? Status(error) : success();
+  };
+  settings.allow_open = true;
+  const auto coordinates = prepare_coordinates(cage, settings, progress.part(0, 0.2));
+  if (!coordinates) {
+    return passed(coordinates.error());
+  }
+  Result<PoseErrors> errors = pose_errors(**coordinates, model.positions, progress.part(0.2, 0.8));
+  if (!errors) {
+    return passed(errors.error());
+  }
+  const Result<UnseenShare> unseen =
+      unseen_share(cage, **coordinates, model.positions, progress.part(0.8, 1));
+  if (!unseen) {
+    return passed(unseen.error());
+  }
+  for (std::size_t k = 0; k < standard_poses.size(); ++k) {
+    compared.posed[k] = deformed_figures(model, errors->followed[k]);
+  }
+  compared.unseen = *unseen;
+  compared.poses = *std::move(errors);
+  return success();
+}
+
+} // namespace
 
 Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& cage,
                                   TriangleView model, const ModelVolume& volume,
@@ -23,12 +55,9 @@ Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& ca
   compared.validity = std::move(*report);
   compared.metrics = measure_cage(cage, model, volume);
   if (poses != nullptr) {
-    const Result<PoseErrors> errors =
-        pose_errors(cage, model.positions, *poses, progress.part(0.6, 1));
-    if (errors) {
-      compared.poses = *errors;
-    } else if (errors.error().code == ErrorCode::cancelled) {
-      return errors.error();
+    if (const Status status = try_poses(cage, model, *poses, progress.part(0.6, 1), compared);
+        !status) {
+      return status.error();
     }
   }
   return compared;
@@ -50,10 +79,13 @@ nlohmann::json json_of(const ComparedCage& cage) {
   json["poses"] = nullptr;
   if (cage.poses) {
     json["poses"] = {{"undefined", cage.poses->undefined}, {"outside", cage.poses->outside}};
+    json["poses"]["unseen_share"] = json_of(cage.unseen);
     for (const StandardPose pose : standard_poses) {
       const PoseError& error = cage.poses->of[static_cast<std::size_t>(pose)];
       json["poses"][std::string(name_of(pose))] = {{"mean_error", error.mean},
                                                    {"max_error", error.max}};
+      json["poses"][std::string(name_of(pose))].update(
+          json_of(cage.posed[static_cast<std::size_t>(pose)]));
     }
   }
   return json;

@@ -5,6 +5,7 @@
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
+#include <cagewright/deform/following.h>
 #include <cagewright/deform/standard_poses.h>
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/mesh/triangle_mesh.h>
@@ -14,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -28,6 +30,8 @@ struct ComparedCage {
   std::size_t quads = 0;
   CageMetrics metrics;
   std::optional<PoseErrors> poses; ///< none: not asked for, or the cage cannot carry a model
+  std::array<DeformedFigures, standard_poses.size()> posed; ///< with `poses`
+  UnseenShare unseen;                                       ///< with `poses`
 };
 
 /// Judges and measures a cage, and tries how well it bends and twists its model.

@@ -138,6 +138,17 @@ class Deform(InAFolder):
         moved = [[x + 2, y, z] for x, y, z in rows(self.model, "v")]
         self.assert_near(rows(self.out, "v"), moved, 1e-12)
 
+    def test_says_in_figures_what_became_of_the_model(self):
+        wide = self.file("wide.obj", cage(lambda x, y, z: (2 * x, y, z)))
+        told = self.folder / "told.json"
+        result = run("deform", self.model, self.rest, wide, "-o", self.folder / "out.obj", "--json", told)
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        (pose,) = json.loads(told.read_text())["poses"]
+        self.assertAlmostEqual(pose["max_stretch"], 2, places=6)
+        self.assertAlmostEqual(pose["volume_change"], 1, places=6)
+        self.assertEqual(pose["flipped_triangles"], 0)
+        self.assertEqual(pose["output"], str(self.folder / "out.obj"))
+
     def test_keeps_all_but_positions_and_normals(self):
         run("deform", self.model, self.rest, self.pose, "-o", self.out)
         kept = [line for line in MODEL.splitlines() if not line.startswith(("v ", "vn "))]
@@ -401,6 +412,17 @@ class Bind(InAFolder):
                    self.weights)
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assert_near(rows(self.out, "v"), rows(direct, "v"), 1e-6)
+
+    def test_says_in_figures_what_was_bound(self):
+        for kind in ("mean_value", "quad_green"):
+            told = self.folder / "told.json"
+            result = run("bind", self.model, self.rest, "-o", self.weights, "--coordinates", kind, "--json", told)
+            self.assertEqual(result.returncode, DONE, result.stderr)
+            report = json.loads(told.read_text())
+            self.assertEqual(report["coordinates"], kind)
+            self.assertEqual(report["points"], 16)
+            self.assertEqual((report["outside"], report["undefined"]), (0, 0))
+            self.assertEqual(report["unseen_share"], {"mean": 0, "p95": 0, "points": 16})  # a box
 
     def test_stores_arrays_that_reproduce_the_model(self):
         with zipfile.ZipFile(self.weights) as archive:

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace cagewright {
 
@@ -59,15 +60,20 @@ struct PoseErrors {
   std::size_t undefined = 0; ///< vertices without weights: they stay at rest, and count as they are
   std::size_t outside =
       0; ///< of vertices outside the cage, where the kind is not defined; as these
+  std::array<std::vector<Vec3>, standard_poses.size()> followed; ///< where the V vertices go
 };
 
 /// Takes the vertices of the cage alone through each pose, lets the model follow, and compares its
 /// V vertices with the pose of the model itself.
 ///
-/// \param cage   C vertices; it may be open or invalid where the kind makes sense of it
-/// \param model  V positions, V > 0
+/// \param coordinates  of the cage; it may be open or invalid where the kind makes sense of it
+/// \param model        V positions, V > 0
 /// Errors: invalid_cage (as the kind says), cancelled.
 /// Cost: that of binding, O(V F); no memory for weights. The same on any number of threads.
+Result<PoseErrors> pose_errors(const Coordinates& coordinates, std::span<const Vec3> model,
+                               const Progress& progress = {});
+
+/// The same, with the coordinates that the settings name.
 Result<PoseErrors> pose_errors(const PolygonMesh& cage, std::span<const Vec3> model,
                                CoordinateSettings settings = {}, const Progress& progress = {});
 
