@@ -187,6 +187,34 @@ Result<PolygonMesh> load_chosen(const std::string& path, const ModelChoice& choi
   return part_of(file->mesh(), *faces).mesh;
 }
 
+Result<PolygonMesh> load_chosen(const std::vector<std::string>& paths, const ModelChoice& choice) {
+  PolygonMesh all;
+  bool have_colors = true;
+  for (const std::string& path : paths) {
+    Result<PolygonMesh> mesh = load_chosen(path, choice);
+    if (!mesh || paths.size() == 1) {
+      return mesh;
+    }
+    const auto first = static_cast<Index>(all.positions.size());
+    have_colors = have_colors && mesh->colors.size() == mesh->positions.size();
+    all.positions.insert(all.positions.end(), mesh->positions.begin(), mesh->positions.end());
+    all.colors.insert(all.colors.end(), mesh->colors.begin(), mesh->colors.end());
+    std::vector<Index> corners;
+    for (std::size_t f = 0; f < mesh->face_count(); ++f) {
+      const auto face = mesh->face(f);
+      corners.assign(face.begin(), face.end());
+      for (Index& v : corners) {
+        v += first;
+      }
+      all.add_face(corners);
+    }
+  }
+  if (!have_colors) {
+    all.colors.clear();
+  }
+  return all;
+}
+
 Result<PolygonMesh> load_cage(const std::string& path, const ModelChoice& choice) {
   Result<ModelFile> file = load_model(path, choice.pose);
   if (!file) {

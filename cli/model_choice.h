@@ -50,6 +50,9 @@ MeshPart part_of(const PolygonMesh& mesh, const std::vector<bool>& faces);
 /// Reads a model and takes the chosen part of it.
 Result<PolygonMesh> load_chosen(const std::string& path, const ModelChoice& choice);
 
+/// Several models as one, in this order: what one cage is to be made for. The chosen parts of each.
+Result<PolygonMesh> load_chosen(const std::vector<std::string>& paths, const ModelChoice& choice);
+
 /// Reads a cage: the objects chosen for it.
 Result<PolygonMesh> load_cage(const std::string& path, const ModelChoice& choice);
 

@@ -10,7 +10,10 @@ namespace cagewright::cli {
 void add_generate(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("generate", "Make a valid cage for a model");
   const auto arguments = std::make_shared<GenerateArguments>();
-  command->add_option("MODEL", arguments->model, "OBJ, PLY, STL, OFF, GLB or glTF file")
+  command
+      ->add_option("MODEL", arguments->models,
+                   "OBJ, PLY, STL, OFF, GLB or glTF file; of several, a figure and its clothes or "
+                   "the poses of an animation, one cage is made for all")
       ->required();
   command->add_option("-o,--output", arguments->output, "OBJ, PLY, STL or OFF file to write")
       ->required();
@@ -65,6 +68,8 @@ void add_generate(CLI::App& app, Session& session) {
                   "  cagewright generate model.obj -o cage.obj --vertices 60 --quads\n"
                   "  cagewright generate model.obj -o cage.obj --max-gap 2%     the coarsest cage "
                   "within 2 %\n"
+                  "  cagewright generate skin.obj coat.obj -o cage.obj          one cage "
+                  "for both\n"
                   "  cagewright generate model.obj -o cage.obj --pieces apart   a closed surface "
                   "for each piece\n"
                   "  cagewright generate model.obj -o cage.obj --start my_cage.obj\n"

@@ -19,7 +19,7 @@ namespace cagewright::cli {
 enum class Emit { cage, boxes, voxels };
 
 struct GenerateArguments {
-  std::string model;
+  std::vector<std::string> models; ///< one cage for all of them
   std::string output;
   std::string json;
   ModelChoice choice;

@@ -51,6 +51,12 @@ PolygonMesh voxel_objects(const BoxDecomposition& boxes) {
   return mesh;
 }
 
+/// For messages about what was made of all of them.
+std::string name_of_models(const GenerateArguments& arguments) {
+  const std::size_t others = arguments.models.size() - 1;
+  return arguments.models.front() + (others == 0 ? "" : " and " + std::to_string(others) + " more");
+}
+
 /// The mesh and its description: both or neither.
 Status write_outputs(const GenerateArguments& arguments, const PolygonMesh& mesh,
                      const nlohmann::json& description) {
@@ -80,7 +86,7 @@ int emit_stage(const GenerateArguments& arguments, const Session& session,
   const Result<BoxDecomposition> boxes =
       decompose(model, decompose_options(arguments.options), session.progress());
   if (!boxes) {
-    return fail(in_file(arguments.model, boxes.error()));
+    return fail(in_file(name_of_models(arguments), boxes.error()));
   }
   const std::vector<int> cover = boxes->tree.cover();
   const PolygonMesh mesh =
@@ -100,7 +106,8 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
   const Result<GeneratedCage> made = generate(model, options, session.progress());
   if (!made) {
     const bool is_about_start = made.error().code == ErrorCode::invalid_cage;
-    return fail(in_file(is_about_start ? arguments.start : arguments.model, made.error()));
+    return fail(
+        in_file(is_about_start ? arguments.start : name_of_models(arguments), made.error()));
   }
   if (const Status written = write_outputs(arguments, made->faces, to_json(*made, options));
       !written) {
@@ -118,18 +125,19 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
 
 int run_generate(const GenerateArguments& arguments, const Session& session) {
   std::fputs(without_effect(arguments).c_str(), stderr);
-  if (const Status writable = can_write_cage(arguments.output, {arguments.model, arguments.start});
-      !writable) {
+  std::vector<std::string> inputs = arguments.models;
+  inputs.insert(inputs.end(), {arguments.density, arguments.start});
+  if (const Status writable = can_write_cage(arguments.output, inputs); !writable) {
     return fail(writable.error());
   }
   if (!arguments.json.empty()) {
-    const Status writable = can_write_output(
-        arguments.json, {arguments.model, arguments.output, arguments.density, arguments.start});
+    inputs.push_back(arguments.output);
+    const Status writable = can_write_output(arguments.json, inputs);
     if (!writable) {
       return fail(writable.error());
     }
   }
-  const Result<PolygonMesh> mesh = load_chosen(arguments.model, arguments.choice);
+  const Result<PolygonMesh> mesh = load_chosen(arguments.models, arguments.choice);
   if (!mesh) {
     return fail(mesh.error());
   }

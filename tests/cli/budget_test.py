@@ -101,6 +101,22 @@ class InAFolder(unittest.TestCase):
             self.assertIn(word, made.stderr)
 
 
+class SeveralModels(InAFolder):
+    def test_get_one_cage(self):
+        coat = self.file("coat.obj", obj(torus(tube=0.35, offset=(0, 0, 0.4))))
+        made = run("generate", self.model, coat, "-o", self.cage, "--vertices", 60)
+        self.assertEqual(made.returncode, DONE, made.stderr)
+        for model in (self.model, coat):
+            self.assertEqual(run("check", model, self.cage).returncode, DONE)
+
+    def test_are_read_before_anything_is_made_and_never_written_over(self):
+        self.assertIn("none.obj", run("generate", self.model, self.folder / "none.obj", "-o", self.cage).stderr)
+        self.assertFalse(self.cage.exists())
+        coat = self.file("coat.obj", obj(torus()))
+        self.assertEqual(run("generate", self.model, coat, "-o", coat).returncode, BAD_INPUT)
+        self.assertIn("f ", coat.read_text())
+
+
 class OwnCage(InAFolder):
     def test_is_made_valid_and_tight_with_its_faces(self):
         self.generate("--vertices", 40)
