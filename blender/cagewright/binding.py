@@ -262,8 +262,7 @@ def show_again(model):
 
 
 def _nodes(key, cage):
-    """The modifier's nodes: positions plus the attribute. That they name the cage tells Blender that the model depends
-    on it, hidden or not."""
+    """The modifier's nodes: positions plus the attribute; and a node that may name the cage, see name_cage()."""
     tree = bpy.data.node_groups.new(f"{MODIFIER} {key}", "GeometryNodeTree")
     if hasattr(tree, "interface"):
         tree.interface.new_socket(name="Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
@@ -280,7 +279,7 @@ def _nodes(key, cage):
         node.location = place
     attribute.data_type = "FLOAT_VECTOR"
     attribute.inputs["Name"].default_value = f"cagewright_{key}"
-    info.inputs["Object"].default_value = cage
+    tree["cage"] = cage
     value = next(socket for socket in attribute.outputs if socket.enabled and socket.name == "Attribute")
     tree.links.new(given.outputs[0], moved.inputs["Geometry"])
     tree.links.new(value, moved.inputs["Offset"])
@@ -296,17 +295,22 @@ def modifier_of(model):
     return None
 
 
-def cage_of_nodes(tree):
-    for node in tree.nodes:
-        if node.bl_idname == "GeometryNodeObjectInfo":
-            return node.inputs["Object"].default_value
-    return None
+def name_cage(model, is_named):
+    """Whether the nodes name the cage: Blender then evaluates it even where it is hidden, in renders above all, but
+    evaluates the model twice for each of its moves."""
+    modifier = modifier_of(model)
+    if modifier is None:
+        return
+    wanted = model.cagewright.cage if is_named else None
+    for node in modifier.node_group.nodes:
+        if node.bl_idname == "GeometryNodeObjectInfo" and node.inputs["Object"].default_value != wanted:
+            node.inputs["Object"].default_value = wanted
 
 
 def own_nodes(model):
-    """A copy of a model and its cage follows the copied cage: it gets nodes of its own, which name that."""
+    """A copy of a model and its cage follows the copied cage: it gets nodes of its own."""
     modifier = modifier_of(model)
-    if modifier is None or cage_of_nodes(modifier.node_group) == model.cagewright.cage:
+    if modifier is None or modifier.node_group.get("cage") == model.cagewright.cage:
         return
     tree = modifier.node_group
     modifier.node_group = _nodes(model.cagewright.key, model.cagewright.cage)

@@ -210,7 +210,8 @@ class CAGEWRIGHT_OT_mirror(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return obj is not None and obj.type == "MESH" and obj.mode in {"OBJECT", "EDIT"}
+        return obj is not None and obj.type == "MESH" and obj.mode in {"OBJECT", "EDIT"} \
+            and bool(check_cage.models_for(obj))
 
     def execute(self, context):
         cage = context.active_object

@@ -49,6 +49,23 @@ def _deleted():
     return any(cage is None or not cage.users_scene for cage in map(bpy.data.objects.get, _bound))
 
 
+def _name_hidden():
+    """Cages that cannot be seen are evaluated for the sake of their models."""
+    for model in _all():
+        binding.name_cage(model, not model.cagewright.cage.visible_get())
+
+
+@persistent
+def _before_render(*_):
+    for model in _all():
+        binding.name_cage(model, True)
+
+
+@persistent
+def _after_render(*_):
+    _name_hidden()
+
+
 @persistent
 def _after_update(scene, depsgraph):
     if _paused:
@@ -60,6 +77,7 @@ def _after_update(scene, depsgraph):
         return
     if not _bound:
         return
+    _name_hidden()
     moved = set()
     for update in depsgraph.updates:
         if isinstance(update.id, bpy.types.Object) and (update.is_updated_geometry or update.is_updated_transform):
@@ -101,8 +119,9 @@ def _after_load(*_):
         _after_frame(bpy.context.scene)
 
 
-_HANDLERS = [("depsgraph_update_post", _after_update), ("frame_change_post", _after_frame), ("undo_post", _after_undo),
-             ("redo_post", _after_undo), ("load_post", _after_load)]
+_HANDLERS = [("render_init", _before_render), ("render_complete", _after_render), ("render_cancel", _after_render),
+             ("depsgraph_update_post", _after_update), ("frame_change_post", _after_frame),
+             ("undo_post", _after_undo), ("redo_post", _after_undo), ("load_post", _after_load)]
 
 
 def _once_registered():

@@ -16,7 +16,7 @@ _PRECISIONS = (4, 5, 6)  # each takes some times as long as the one before
 _SLACK = 1e-3            # how far a vertex may be from following, as a part of the way
 
 
-class _at_rest:
+class at_rest:
     """While it lasts, the armatures of some objects are in their rest position."""
 
     def __init__(self, *objects):
@@ -93,7 +93,7 @@ def bind_one(model, cage):
     old = model.modifiers.get(MODIFIER)
     if old is not None:
         model.modifiers.remove(old)
-    with _at_rest(model, cage):
+    with at_rest(model, cage):
         _check(model, cage)
         modifier = model.modifiers.new(MODIFIER, "MESH_DEFORM")
         modifier.object = cage

@@ -51,7 +51,8 @@ class CAGEWRIGHT_PT_main(_Panel, bpy.types.Panel):
             state = model.cagewright
             if not binding.is_bound(model):
                 continue
-            layout.label(text=f"{model.name} follows {state.cage.name if state.cage else 'nothing'}", icon="LINKED")
+            for line in _wrapped(f"{model.name} follows {state.cage.name if state.cage else 'nothing'}"):
+                layout.label(text=line, icon="LINKED")
             if state.problem:
                 for line in _wrapped(state.problem):
                     layout.label(text=line, icon="ERROR")
@@ -61,7 +62,7 @@ class CAGEWRIGHT_PT_main(_Panel, bpy.types.Panel):
                 layout.label(text=line, icon="CHECKMARK" if valid else "ERROR")
 
 
-def _wrapped(text, width=44):
+def _wrapped(text, width=27):
     import textwrap
     return textwrap.wrap(text, width)
 
@@ -126,7 +127,8 @@ class CAGEWRIGHT_PT_tools(_Panel, bpy.types.Panel):
     def draw(self, context):
         column = self.layout.column(align=True)
         for operator, icon in _TOOLS:
-            column.operator(operator, icon=icon)
+            text = {"cagewright.weights_to_groups": "To Vertex Groups"}.get(operator)
+            column.operator(operator, icon=icon, **({"text": text} if text else {}))
 
 
 _TOOLS = [("cagewright.check", "CHECKMARK"), ("cagewright.fit", "MOD_SHRINKWRAP"), ("cagewright.mirror", "MOD_MIRROR"),

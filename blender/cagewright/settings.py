@@ -96,10 +96,10 @@ def _scene_properties():
                ("REST", "As Stored", "The mesh itself, without modifiers: a rigged character in its rest pose. The "
                                      "cage moves it before its armature, which goes on posing it")])
     properties["together"] = BoolProperty(
-        name="One Cage for All", default=False,
+        name="One for All", default=False,
         description="All selected objects get one cage, such as a body and its clothes; else each gets its own")
     properties["parent"] = BoolProperty(
-        name="Parent to Model", default=True,
+        name="Parent", default=True,
         description="The cage goes along when the model is moved, turned or scaled as a whole")
     properties["skin"] = BoolProperty(
         name="Skin to Rig", default=False,

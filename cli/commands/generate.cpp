@@ -41,6 +41,11 @@ void add_generate(CLI::App& app, Session& session) {
       ->group(std::string(title_of(OptionGroup::model)));
   const char* results = "Results";
   command
+      ->add_flag("--skin-cage", arguments->skin_cage,
+                 "The cage of a rigged model follows its joints, as the model near it does: a .glb "
+                 "or .gltf file with the rig, its animations, and the cage instead of the model")
+      ->group(results);
+  command
       ->add_option("--json", arguments->json,
                    "File for all figures and the options used; of boxes every box, axis, "
                    "cross-section and cut")

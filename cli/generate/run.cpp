@@ -9,11 +9,16 @@
 #include "cage/decompose.h"
 #include "cage/hexahedron.h"
 #include "io/atomic_file.h"
+#include "io/source.h"
+#include "io/write_gltf.h"
 #include "voxel/voxel_mesh.h"
 #include <cagewright/cage/generate.h>
 #include <cagewright/io/mesh_format.h>
+#include <cagewright/io/model_file.h>
+#include <cagewright/io/skinned_cage.h>
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/triangulate.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <array>
 #include <cassert>
@@ -57,14 +62,52 @@ std::string name_of_models(const GenerateArguments& arguments) {
   return arguments.models.front() + (others == 0 ? "" : " and " + std::to_string(others) + " more");
 }
 
+/// The cage with the rig of its model. It is placed by joints, in floats: so it is judged once more
+/// as the file shows it.
+Result<std::string> skinned(const GenerateArguments& arguments, const PolygonMesh& cage,
+                            const TriangleMesh& model) {
+  const Pose pose = arguments.choice.pose;
+  Result<std::string> bytes = format_skinned_cage(arguments.models.front(), pose, cage,
+                                                  is_gltf_json_name(arguments.output));
+  if (!bytes) {
+    return bytes.error();
+  }
+  const Result<ModelFile> file = ModelFile::parse(*bytes, MeshFormat::gltf, arguments.output, pose);
+  if (!file) {
+    return file.error();
+  }
+  const Result<ValidityReport> report = validate_cage(
+      file->mesh(), model, {.allow_pieces = true, .allow_inner_shells = true, .first_only = true});
+  if (!report) {
+    return report.error();
+  }
+  if (!report->valid()) {
+    return Error{
+        ErrorCode::no_valid_cage,
+        one_line(arguments.output) +
+            ": placed by its joints, in the floats of glTF, the cage is not valid; give it "
+            "more clearance (--clearance 1%), or write it without --skin-cage"};
+  }
+  return bytes;
+}
+
+Result<std::string> bytes_of(const GenerateArguments& arguments, const PolygonMesh& mesh,
+                             const TriangleMesh& model) {
+  if (arguments.skin_cage) {
+    return skinned(arguments, mesh, model);
+  }
+  const std::optional<MeshFormat> format = format_of_name(arguments.output);
+  assert(format); // run_generate() has asked can_write()
+  Result<std::string> bytes = format_mesh(mesh, *format);
+  return bytes ? std::move(bytes) : in_file(arguments.output, bytes.error());
+}
+
 /// The mesh and its description: both or neither.
 Status write_outputs(const GenerateArguments& arguments, const PolygonMesh& mesh,
-                     const nlohmann::json& description) {
-  const std::optional<MeshFormat> format = format_of_name(arguments.output);
-  assert(format); // run_generate() has asked can_write_cage()
-  const Result<std::string> bytes = format_mesh(mesh, *format);
+                     const TriangleMesh& model, const nlohmann::json& description) {
+  const Result<std::string> bytes = bytes_of(arguments, mesh, model);
   if (!bytes) {
-    return in_file(arguments.output, bytes.error());
+    return bytes.error();
   }
   nlohmann::json all = description;
   all["notes"] = notes_as_json();
@@ -91,7 +134,8 @@ int emit_stage(const GenerateArguments& arguments, const Session& session,
   const std::vector<int> cover = boxes->tree.cover();
   const PolygonMesh mesh =
       arguments.emit == Emit::boxes ? box_objects(*boxes, cover) : voxel_objects(*boxes);
-  if (const Status written = write_outputs(arguments, mesh, to_json(*boxes, cover)); !written) {
+  if (const Status written = write_outputs(arguments, mesh, model, to_json(*boxes, cover));
+      !written) {
     return fail(written.error());
   }
   session.say(summary(*boxes, cover));
@@ -109,7 +153,7 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
     return fail(
         in_file(is_about_start ? arguments.start : name_of_models(arguments), made.error()));
   }
-  if (const Status written = write_outputs(arguments, made->faces, to_json(*made, options));
+  if (const Status written = write_outputs(arguments, made->faces, model, to_json(*made, options));
       !written) {
     return fail(written.error());
   }
@@ -121,13 +165,33 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
   return not_satisfiable;
 }
 
+Status can_write(const GenerateArguments& arguments, const std::vector<std::string>& inputs) {
+  if (!arguments.skin_cage) {
+    return can_write_cage(arguments.output, inputs);
+  }
+  if (format_of_name(arguments.output) != MeshFormat::gltf) {
+    return Error{ErrorCode::unsupported, one_line(arguments.output) +
+                                             ": with --skin-cage the cage is written as .glb or "
+                                             ".gltf, which hold joints"};
+  }
+  if (arguments.models.size() > 1) {
+    return Error{ErrorCode::invalid_option,
+                 "--skin-cage: one model has the rig; give one, or leave it out"};
+  }
+  if (arguments.emit != Emit::cage) {
+    return Error{ErrorCode::invalid_option, "--skin-cage: only cages follow joints; leave it out, "
+                                            "or leave out --emit"};
+  }
+  return can_write_output(arguments.output, inputs);
+}
+
 } // namespace
 
 int run_generate(const GenerateArguments& arguments, const Session& session) {
   std::fputs(without_effect(arguments).c_str(), stderr);
   std::vector<std::string> inputs = arguments.models;
   inputs.insert(inputs.end(), {arguments.density, arguments.start});
-  if (const Status writable = can_write_cage(arguments.output, inputs); !writable) {
+  if (const Status writable = can_write(arguments, inputs); !writable) {
     return fail(writable.error());
   }
   if (!arguments.json.empty()) {

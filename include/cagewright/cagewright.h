@@ -17,6 +17,7 @@
 #include <cagewright/io/read_mesh.h>
 #include <cagewright/io/read_vertex_weights.h>
 #include <cagewright/io/rewrite_positions.h>
+#include <cagewright/io/skinned_cage.h>
 #include <cagewright/io/write_animation.h>
 #include <cagewright/io/write_mesh.h>
 #include <cagewright/mesh/measures.h>

@@ -109,16 +109,59 @@ class Bind(Test):
         bpy.context.scene.frame_set(100)
         self.assertFollows(model, cage, bent(self.cage_rest) + [0, 0, 4])
 
-    def test_a_hidden_cage_moves_its_model_in_renders_too(self):
+    def moving(self):
         model, cage = self.bound()
         cage.hide_render = True
-        cage.hide_set(True)
         cage.keyframe_insert("location", frame=1)
         cage.location = (0, 0, 5)
         cage.keyframe_insert("location", frame=10)
+        cage.shape_key_add(name="Basis")
+        key = cage.shape_key_add(name="Aside")
+        key.data.foreach_set("co", (self.cage_rest + [2, 0, 0]).astype(np.float32).ravel())
+        for frame, value in ((1, 0.0), (10, 1.0)):
+            key.value = value
+            key.keyframe_insert("value", frame=frame)
+        return model, cage
+
+    def test_a_hidden_cage_moves_its_model(self):
+        model, cage = self.moving()
+        cage.hide_set(True)
+        bpy.context.view_layer.update()
         bpy.context.scene.frame_set(1)
+        self.assertNear(shown(model), self.rest, 1e-6)
         bpy.context.scene.frame_set(10)
-        self.assertNear(shown(model), self.rest + [0, 0, 5], 1e-6)
+        self.assertNear(shown(model), self.rest + [2, 0, 5], 1e-6)
+
+    def test_a_cage_that_is_not_rendered_moves_its_model_in_renders(self):
+        """Seen by what the renderer is given: where the model is when a frame has been rendered."""
+        model, cage = self.moving()
+        scene = bpy.context.scene
+        camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+        scene.collection.objects.link(camera)
+        scene.camera = camera
+        places = []
+
+        class Engine(bpy.types.RenderEngine):
+            bl_idname, bl_label = "TEST", "Test"
+
+            def render(self, depsgraph):
+                for instance in depsgraph.object_instances:
+                    if instance.object.original == model:
+                        places.append(geometry.points_of(instance.object.data).copy())
+
+        bpy.utils.register_class(Engine)
+        try:
+            scene.render.engine = "TEST"
+            scene.render.filepath = str(HOME / "frame_")
+            scene.render.resolution_x = scene.render.resolution_y = 16
+            scene.frame_start, scene.frame_end, scene.frame_step = 1, 10, 9
+            bpy.ops.render.render(animation=True)
+        finally:
+            scene.render.engine = "BLENDER_WORKBENCH"
+            bpy.utils.unregister_class(Engine)
+        self.assertEqual(len(places), 2)
+        self.assertNear(places[0], self.rest, 1e-6)
+        self.assertNear(places[1], self.rest + [2, 0, 5], 1e-6)
 
     def test_an_armature_on_the_cage(self):
         model, cage = self.bound()

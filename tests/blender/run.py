@@ -2,7 +2,7 @@
 """The tests of the add-on in a real Blender, without a window:  run.py ZIP PROGRAM [MODELS] [NAME...]
 
 Each *_test.py beside this file runs in a Blender of its own, which has nothing but the add-on, installed from its zip.
-Where there is no Blender they are skipped (exit code 77).
+Where there is no Blender they are skipped (exit code 77). ONLY=word in the environment runs the cases whose names have it.
 """
 
 import os
@@ -20,7 +20,8 @@ def run(test, zip_file, program, models):
         # Debian's Blender takes the python3 that comes first, and numpy with it.
         environment = {"PATH": "/usr/bin:/bin", "HOME": home, "BLENDER_USER_SCRIPTS": home + "/scripts",
                        "BLENDER_USER_CONFIG": home + "/config", "BLENDER_USER_DATAFILES": home + "/datafiles",
-                       "LANG": os.environ.get("LANG", "C.UTF-8")}
+                       "LANG": os.environ.get("LANG", "C.UTF-8"), "GLTF_VALIDATOR": os.environ.get("GLTF_VALIDATOR", ""),
+                       "ONLY": os.environ.get("ONLY", "")}
         (pathlib.Path(home) / "scripts" / "addons").mkdir(parents=True)
         # Without Blender's thread for every core: the tests share the machine.
         command = [shutil.which("blender") or "/usr/bin/blender", "--background", "--factory-startup", "--threads", "2",

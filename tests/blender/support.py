@@ -1,5 +1,6 @@
 """What the tests in Blender share: the add-on from its zip, models as objects, and our own program to compare with."""
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -24,7 +25,8 @@ from cagewright import bindings, binding, engine, geometry, program_engine  # no
 
 
 def main():
-    run = unittest.main(argv=["test"], exit=False, verbosity=1)
+    only = os.environ.get("ONLY")
+    run = unittest.main(argv=["test"] + (["-k", only] if only else []), exit=False, verbosity=1)
     sys.stderr.flush()
     if not run.result.wasSuccessful():
         sys.exit(1)
