@@ -50,22 +50,25 @@ Status write_report(const Options& options, const CoordinateSettings& settings,
     return unseen.error();
   }
   const double bound = coordinates.error_bound();
-  return write_json(options.json,
-                    {{"format", "cagewright-bind"},
-                     {"version", 1},
-                     {"model", options.binding.model},
-                     {"cage", options.binding.cage},
-                     {"output", options.output},
-                     {"coordinates", settings.kind().name},
-                     {"options", settings.text()},
-                     {"points", points.size()},
-                     {"columns", coordinates.columns()},
-                     {"on_cage", counts.on_surface},
-                     {"outside", counts.outside},
-                     {"undefined", counts.undefined},
-                     {"error_bound", bound > 0 ? nlohmann::json(bound) : nlohmann::json(nullptr)},
-                     {"unseen_share", json_of(*unseen)},
-                     {"notes", notes_as_json()}});
+  const double estimate = coordinates.error_estimate();
+  return write_json(
+      options.json,
+      {{"format", "cagewright-bind"},
+       {"version", 1},
+       {"model", options.binding.model},
+       {"cage", options.binding.cage},
+       {"output", options.output},
+       {"coordinates", settings.kind().name},
+       {"options", settings.text()},
+       {"points", points.size()},
+       {"columns", coordinates.columns()},
+       {"on_cage", counts.on_surface},
+       {"outside", counts.outside},
+       {"undefined", counts.undefined},
+       {"error_bound", bound > 0 ? nlohmann::json(bound) : nlohmann::json(nullptr)},
+       {"error_estimate", estimate > 0 ? nlohmann::json(estimate) : nlohmann::json(nullptr)},
+       {"unseen_share", json_of(*unseen)},
+       {"notes", notes_as_json()}});
 }
 
 int run(const Options& options, const Session& session) {
@@ -101,9 +104,13 @@ int run(const Options& options, const Session& session) {
     return fail(counts.error());
   }
   warn_of_points(options.binding.cage, *counts);
-  if ((*coordinates)->error_bound() > 0) {
-    session.say(fmt::format("{}: weights are proven to within {:.2g}\n", options.output,
-                            (*coordinates)->error_bound()));
+  if ((*coordinates)->error_estimate() > 0) {
+    session.say(fmt::format("{}: weights err by {:.2g} at most a hundredth of the cage's diagonal "
+                            "inside it, as far as a coarser computation tells",
+                            options.output, (*coordinates)->error_estimate()));
+    session.say((*coordinates)->error_bound() > 0
+                    ? fmt::format("; nowhere by more than {:.2g}\n", (*coordinates)->error_bound())
+                    : "\n");
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   if (!options.json.empty()) {

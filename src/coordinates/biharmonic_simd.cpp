@@ -145,7 +145,7 @@ public:
   Result<StripMatrix> solve(const Progress& progress) {
     constexpr int pieces = 8;
     const std::vector<CageSample> samples = samples_of(cage_, pieces);
-    NormalEquations equations(columns_, columns_);
+    PositiveSystem equations(columns_, columns_);
     constexpr std::size_t block = 256;
     for (std::size_t first = 0; first < samples.size(); first += block) {
       if (progress.cancelled()) {
@@ -336,7 +336,7 @@ Result<std::shared_ptr<const Coordinates>> biharmonic_coordinates(const PolygonM
   }
   const std::size_t columns = surface->cage_vertices + surface->faces.size();
   // The system, its sides and the solution.
-  if (4 * NormalEquations::bytes(columns) > memory_allowed()) {
+  if (4 * PositiveSystem::bytes(columns) > memory_allowed()) {
     return Error{ErrorCode::too_large,
                  "the cage has " + std::to_string(surface->faces.size()) +
                      " triangles: biharmonic coordinates of it do not fit the memory; make a "

@@ -2,6 +2,7 @@
 
 #include <cagewright/coordinates/biharmonic.h>
 #include <cagewright/coordinates/green.h>
+#include <cagewright/coordinates/harmonic.h>
 #include <cagewright/coordinates/maximum_entropy.h>
 #include <cagewright/coordinates/maximum_likelihood.h>
 #include <cagewright/coordinates/mean_value.h>
@@ -21,9 +22,9 @@ namespace {
 
 // The registry. A kind is a header, a source, a line here and a test.
 constexpr std::array kinds = {
-    &mean_value_kind,      &quad_mean_value_kind,    &positive_mean_value_kind,
-    &maximum_entropy_kind, &maximum_likelihood_kind, &green_kind,
-    &quad_green_kind,      &biharmonic_kind,         &somigliana_kind,
+    &mean_value_kind,      &quad_mean_value_kind,    &harmonic_kind, &positive_mean_value_kind,
+    &maximum_entropy_kind, &maximum_likelihood_kind, &green_kind,    &quad_green_kind,
+    &biharmonic_kind,      &somigliana_kind,
 };
 
 constexpr std::array<std::string_view, 2> quad_words = {"center", "diagonal"};

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace cagewright {
 
@@ -48,17 +49,27 @@ void add_product(std::size_t rows, double factor, const double* a, const double*
 
 /// The x that minimise |A x - B|^2, for A of many rows, given some at a time: A^T A is factored
 /// once for all sides. The same on any number of threads.
-class NormalEquations {
+class PositiveSystem {
 public:
   /// \param unknowns  N columns of A
   /// \param sides     columns of B
-  NormalEquations(std::size_t unknowns, std::size_t sides);
+  PositiveSystem(std::size_t unknowns, std::size_t sides);
 
   /// Adds rows: as many of A as of B. Cost: O(rows N^2).
   void add(const StripMatrix& a, const StripMatrix& b);
 
+  /// An entry of the matrix, row >= column; of the sides. All are 0 at first.
+  [[nodiscard]] double& entry(std::size_t row, std::size_t column) {
+    return tile(row / strip_columns,
+                column /
+                    strip_columns)[(column % strip_columns) * strip_columns + row % strip_columns];
+  }
+  [[nodiscard]] double& side(std::size_t row, std::size_t column) { return sides_.at(row, column); }
+
   /// N rows, padded to a multiple of 16, by sides. Cost: O(N^3). Errors: cancelled.
-  Result<StripMatrix> solve(const Progress& progress);
+  /// \param least_pivot  what is left of a diagonal entry in the factor is at least this part of
+  ///     it: entries that come of quadrature need not be those of a positive matrix
+  Result<StripMatrix> solve(const Progress& progress, double least_pivot = 0);
 
   /// Bytes that a system takes.
   static double bytes(std::size_t unknowns);
@@ -72,7 +83,8 @@ private:
   void backward(double* side);
 
   std::size_t unknowns_;
-  std::size_t tiles_;           // of 16 unknowns
+  std::size_t tiles_; // of 16 unknowns
+  std::vector<double> least_pivots_;
   AlignedBuffer<double> lower_; // tiles of the lower triangle, column by column inside
   StripMatrix sides_;           // A^T B
 };

@@ -77,7 +77,8 @@ namespace {
 constexpr std::size_t tile_size = strip_columns * strip_columns;
 
 /// Of a tile that holds the lower triangle of a matrix column by column: its factor, in place.
-void factor_diagonal(double* tile) {
+/// \param least  pivots
+void factor_diagonal(double* tile, const double* least) {
   for (std::size_t j = 0; j < strip_columns; ++j) {
     for (std::size_t k = 0; k < j; ++k) {
       const double below = tile[k * strip_columns + j];
@@ -85,7 +86,7 @@ void factor_diagonal(double* tile) {
         tile[j * strip_columns + i] -= below * tile[k * strip_columns + i];
       }
     }
-    const double pivot = std::sqrt(std::max(tile[j * strip_columns + j], 1e-290));
+    const double pivot = std::sqrt(std::max(tile[j * strip_columns + j], least[j]));
     for (std::size_t i = 0; i < strip_columns; ++i) {
       tile[j * strip_columns + i] = i < j ? 0 : tile[j * strip_columns + i] / pivot;
     }
@@ -131,17 +132,17 @@ StripMatrix::StripMatrix(std::size_t rows, std::size_t columns)
   std::ranges::fill(data_.span(), 0.0);
 }
 
-NormalEquations::NormalEquations(std::size_t unknowns, std::size_t sides)
+PositiveSystem::PositiveSystem(std::size_t unknowns, std::size_t sides)
     : unknowns_(unknowns), tiles_((unknowns + strip_columns - 1) / strip_columns),
       lower_(tiles_ * (tiles_ + 1) / 2 * tile_size), sides_(tiles_ * strip_columns, sides) {
   std::ranges::fill(lower_.span(), 0.0);
 }
 
-double NormalEquations::bytes(std::size_t unknowns) {
+double PositiveSystem::bytes(std::size_t unknowns) {
   return static_cast<double>(unknowns) * static_cast<double>(unknowns) / 2 * sizeof(double);
 }
 
-void NormalEquations::add(const StripMatrix& a, const StripMatrix& b) {
+void PositiveSystem::add(const StripMatrix& a, const StripMatrix& b) {
   constexpr std::size_t group = 4; // strips that share what they read
   const std::size_t groups = (tiles_ + group - 1) / group;
   parallel_for(0, groups, 1, [&](std::size_t g) {
@@ -161,19 +162,19 @@ void NormalEquations::add(const StripMatrix& a, const StripMatrix& b) {
   });
 }
 
-void NormalEquations::factor_column(std::size_t column) {
+void PositiveSystem::factor_column(std::size_t column) {
   const auto subtract = [&](std::size_t row) { // the tiles of a row are one strip
     add_product(strip_columns * column, -1, tile(column, 0), tile(row, 0), tile(row, column));
   };
   subtract(column);
-  factor_diagonal(tile(column, column));
+  factor_diagonal(tile(column, column), &least_pivots_[column * strip_columns]);
   parallel_for(column + 1, tiles_, 4, [&](std::size_t row) {
     subtract(row);
     divide_by_diagonal(tile(column, column), tile(row, column));
   });
 }
 
-void NormalEquations::forward(double* side) {
+void PositiveSystem::forward(double* side) {
   for (std::size_t row = 0; row < tiles_; ++row) {
     double* const here = side + row * tile_size;
     add_product(strip_columns * row, -1, tile(row, 0), side, here);
@@ -192,7 +193,7 @@ void NormalEquations::forward(double* side) {
   }
 }
 
-void NormalEquations::backward(double* side) {
+void PositiveSystem::backward(double* side) {
   for (std::size_t row = tiles_; row-- > 0;) {
     double* const here = side + row * tile_size;
     for (std::size_t below = row + 1; below < tiles_; ++below) {
@@ -214,7 +215,7 @@ void NormalEquations::backward(double* side) {
   }
 }
 
-Result<StripMatrix> NormalEquations::solve(const Progress& progress) {
+Result<StripMatrix> PositiveSystem::solve(const Progress& progress, double least_pivot) {
   double trace = 0;
   for (std::size_t u = 0; u < unknowns_; ++u) {
     const std::size_t at = u % strip_columns;
@@ -225,6 +226,7 @@ Result<StripMatrix> NormalEquations::solve(const Progress& progress) {
     double& diagonal = tile(u / strip_columns, u / strip_columns)[at * strip_columns + at];
     // A trifle of each, so that rounding leaves all pivots positive.
     diagonal = u < unknowns_ ? diagonal * (1 + 1e-15) + 1e-300 : trace / 16 + 1;
+    least_pivots_.push_back(std::max(least_pivot * diagonal, 1e-290));
   }
   for (std::size_t column = 0; column < tiles_; ++column) {
     if (progress.cancelled()) {

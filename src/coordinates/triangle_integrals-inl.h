@@ -59,8 +59,9 @@ HWY_INLINE Lanes affine_at(const std::array<double, 4>& f, Lanes x, Lanes y, Lan
 class LanePoints {
 public:
   /// \param scratch  scratch_size() numbers, aligned
+  /// \param near     nearer than this to an edge or a vertex points are flagged
   LanePoints(const Surface& surface, const double* x, const double* y, const double* z,
-             double* scratch)
+             double* scratch, double near = near_edge)
       : surface_(surface), x_(Lanes::load(x)), y_(Lanes::load(y)), z_(Lanes::load(z)),
         distance_(scratch), log_(scratch + surface.positions.size() * lanes) {
     Lanes nearest(1e300);
@@ -73,7 +74,7 @@ public:
       nearest = smaller(nearest, d);
       d.store(distance_ + i * lanes);
     }
-    flagged_ = nearest < Lanes(near_edge);
+    flagged_ = nearest < Lanes(near);
     for (std::size_t i = 0; i < surface.edges.size(); ++i) {
       const Surface::Edge& edge = surface.edges[i];
       const Lanes length(edge.length);
@@ -81,7 +82,7 @@ public:
           Lanes::load(distance_ + edge.from * lanes) + Lanes::load(distance_ + edge.to * lanes);
       const Lanes more = sum + length;
       const Lanes gap = sum - length; // at least 2 D^2 / length
-      flagged_ = flagged_ | (gap < Lanes(2 * near_edge * near_edge / edge.length));
+      flagged_ = flagged_ | (gap < Lanes(2 * near * near / edge.length));
       logarithm(more / larger(gap, Lanes(1e-30))).store(log_ + i * lanes);
     }
     near_edges_ = flagged_;

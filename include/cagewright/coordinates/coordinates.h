@@ -61,9 +61,14 @@ public:
   /// What happens to points outside the cage; `error` is for who meets the points, see accept().
   [[nodiscard]] OutsideTreatment outside() const { return outside_; }
 
-  /// No weight inside the cage errs by more than this, of kinds that come near what they are named
-  /// after by a computation that ends somewhere; 0 for the others.
+  /// No weight inside the cage errs by more than this, as is proven, of kinds that come near what
+  /// they are named after by a computation that ends somewhere; 0 for the others.
   [[nodiscard]] virtual double error_bound() const { return 0; }
+
+  /// Of these kinds: how far weights a hundredth of the cage's diagonal inside it, or farther, err
+  /// at most, as a coarser computation lets one guess. Near the edges of the cage they err more, up
+  /// to the bound, if there is one.
+  [[nodiscard]] virtual double error_estimate() const { return error_bound(); }
 
   /// The weights of up to 16 points: weights[k * stride + i] of point i for column k. Computed in
   /// double, and rounded when stored to float. Of each 16 numbers those behind the last point
