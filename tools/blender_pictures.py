@@ -178,13 +178,20 @@ class Window:
         self.settle()
         whole = self.home / "whole.png"
         subprocess.run(["import", "-window", "root", str(whole)], env=self.environment, check=True)
-        subprocess.run(["convert", str(whole), "-crop", "1500x926+0+20", "+repage", "-resize", "1000x", "-strip",
+        subprocess.run(["convert", str(whole), "-crop", f"1500x926+0+{FRAME}", "+repage", "-resize", "1000x", "-strip",
                         "-colors", "255", f"PNG8:{path}"], env=self.environment, check=True)
         print(path)
 
 
 TAB, GENERATE, BIND = (1224, 279), (1113, 151), (1113, 181)  # of the sidebar
 BESIDE = (600, 800)                                          # in the view, on nothing
+FRAME = 20                                                   # of the window, above what Blender draws
+
+LEFTMOST = '''
+cage = bpy.context.view_layer.objects.active
+number = min(range(len(cage.data.vertices)), key=lambda v: screen(cage, v)[0])
+answer = screen(cage, number)
+'''
 
 RIG = '''
 model = creature()
@@ -314,10 +321,8 @@ def two_clicks(window, folder):
     window.move(*BESIDE)
     window.key("Tab")
     window.wait("edit mode", lambda state: state["mode"] == "EDIT")
-    x, y = window.do("cage = bpy.context.view_layer.objects.active\n"
-                     "number = min(range(len(cage.data.vertices)), key=lambda v: screen(cage, v)[0])\n"
-                     "answer = screen(cage, number)")
-    window.click(x, y + 20)  # below the frame of the window
+    x, y = window.do(LEFTMOST)
+    window.click(x, y + FRAME)
     window.key("g")
     for step in range(1, 6):
         window.move(x - 14 * step, y - 24 * step)
