@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   QCoreApplication::setOrganizationName("Cagewright");
   QCoreApplication::setApplicationName("Cagewright");
   QCoreApplication::setApplicationVersion(CAGEWRIGHT_VERSION);
+  QGuiApplication::setDesktopFileName("org.cagewright.Cagewright"); // whose icon the window has
 
   QCommandLineParser parser;
   parser.setApplicationDescription(

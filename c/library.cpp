@@ -15,23 +15,11 @@ const char* cw_version(void) {
 }
 
 const char* cw_features(void) {
-#if CAGEWRIGHT_WITH_BOXES && CAGEWRIGHT_BUILD_RENDER
-  return "boxes render";
-#elif CAGEWRIGHT_WITH_BOXES
-  return "boxes";
-#elif CAGEWRIGHT_BUILD_RENDER
-  return "render";
-#else
-  return "";
-#endif
+  return CAGEWRIGHT_FEATURES;
 }
 
 const char* cw_licence(void) {
-#if CAGEWRIGHT_WITH_BOXES
-  return "GPL-3.0-or-later";
-#else
-  return "MIT";
-#endif
+  return CAGEWRIGHT_LICENCE;
 }
 
 void cw_free(char* text) {

@@ -1,6 +1,8 @@
+#include "describe.h"
 #include "json.h"
 #include "session.h"
 
+#include <cagewright/coordinates/kinds.h>
 #include <cagewright/version.h>
 
 #include <fmt/format.h>
@@ -86,12 +88,12 @@ Error out_of_memory(const Session& session) {
   ::_exit(code);
 }
 
-constexpr const char* version_text = "cagewright " CAGEWRIGHT_VERSION
-#if CAGEWRIGHT_WITH_BOXES
-                                     "\nwith the union of boxes; licence: GPL-3.0-or-later";
-#else
-                                     "\nwithout the union of boxes; licence: MIT";
-#endif
+std::string version_text() {
+  return fmt::format("cagewright {}\nfeatures: {}\ncoordinates: {}\nlicence: {}\n"
+                     "Cages, weights and deformed models are yours: no licence covers them.",
+                     CAGEWRIGHT_VERSION, CAGEWRIGHT_FEATURES, names_of_coordinate_kinds(),
+                     CAGEWRIGHT_LICENCE);
+}
 
 int run(Session& session) {
   try {
@@ -199,7 +201,7 @@ int main(int argc, char** argv) {
   session.json = json_of_command_line(session.words);
   session.begin();
   CLI::App app("Builds a cage round a 3D model and deforms the model with it.", "cagewright");
-  app.set_version_flag("--version", version_text);
+  app.set_version_flag("--version", version_text, "Print version, features and licence, and exit");
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
   app.add_option("--threads", session.threads, "Threads to use; 0 means all cores")
@@ -211,6 +213,7 @@ int main(int argc, char** argv) {
 #define CAGEWRIGHT_ADD(name) add_##name(app, session);
   CAGEWRIGHT_COMMANDS(CAGEWRIGHT_ADD)
 #undef CAGEWRIGHT_ADD
+  add_describe(app, session);
   catch_signals(session);
   return flush_output(run_command_line(session, app, argc, argv));
 }

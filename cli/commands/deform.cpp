@@ -1,6 +1,7 @@
 #include "binding.h"
 #include "json.h"
 #include "load.h"
+#include "movement.h"
 #include "session.h"
 
 #include "deform/apply.h"
@@ -22,11 +23,13 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cagewright::cli {
@@ -40,6 +43,7 @@ struct Options {
   std::string output;
   std::string weights;
   std::string json;
+  FrameTimes times;
 };
 
 struct Pose {
@@ -47,7 +51,8 @@ struct Pose {
   std::string output;
 };
 
-/// Names with * or ? that the shell has left alone, for example because they were quoted.
+/// Names with * or ? that the shell has left alone, for example because they were quoted; what
+/// matches one is in the order of its numbers.
 Result<std::vector<std::string>> expand(const std::vector<std::string>& names) {
   std::vector<std::string> paths;
   for (const std::string& name : names) {
@@ -55,7 +60,9 @@ Result<std::vector<std::string>> expand(const std::vector<std::string>& names) {
     if (name.find_first_of("*?[") == std::string::npos || fs::exists(name)) {
       paths.push_back(name);
     } else if (glob(name.c_str(), 0, nullptr, &found) == 0) {
-      paths.insert(paths.end(), found.gl_pathv, found.gl_pathv + found.gl_pathc);
+      std::vector<std::string> matching(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+      std::ranges::sort(matching, comes_before);
+      paths.insert(paths.end(), matching.begin(), matching.end());
     } else {
       return Error{ErrorCode::cannot_open, name + ": no file has such a name"};
     }
@@ -64,25 +71,29 @@ Result<std::vector<std::string>> expand(const std::vector<std::string>& names) {
   return paths;
 }
 
-/// Where each pose goes: OUT itself for a single one; else OUT is a folder, or a name in which *
-/// stands for the name of the pose.
-Result<std::vector<Pose>> plan_outputs(const Options& options) {
-  const Result<std::vector<std::string>> paths = expand(options.poses);
-  if (!paths) {
-    return paths.error();
+/// Where each pose goes: OUT itself for a single one, and for all where it holds a movement; else
+/// OUT is a folder, or a name in which * stands for the name of the pose.
+Result<std::vector<Pose>> plan_outputs(const Options& options, std::vector<std::string> paths) {
+  std::vector<Pose> poses;
+  if (holds_movement(options.output, paths.size())) {
+    in_order_of_frames(paths);
+    for (const std::string& path : paths) {
+      poses.push_back({path, options.output});
+    }
+    return poses;
   }
   const std::string extension = fs::path(options.binding.model).extension().string();
   const std::size_t star = options.output.find('*');
   const bool is_folder = fs::is_directory(options.output) || options.output.ends_with('/');
-  if (paths->size() > 1 && star == std::string::npos && !is_folder) {
+  if (paths.size() > 1 && star == std::string::npos && !is_folder) {
     return Error{ErrorCode::invalid_option,
                  fmt::format("--output: {} is one file, but there are {} deformed cages; give a "
-                             "folder, or a name with * for the name of the cage",
-                             options.output, paths->size())};
+                             "folder, a name with * for the name of the cage, or a file that holds "
+                             "a movement (.pc2, .mdd, .glb)",
+                             options.output, paths.size())};
   }
-  std::vector<Pose> poses;
   std::set<std::string> taken;
-  for (const std::string& path : *paths) {
+  for (const std::string& path : paths) {
     const std::string stem = fs::path(path).stem().string();
     std::string output = options.output;
     if (is_folder) {
@@ -162,14 +173,23 @@ std::vector<Vec3> with_part(const ModelAndCage& meshes, std::span<const Vec3> mo
   return positions;
 }
 
-/// Deforms with the weights of a file: for each pose all P positions.
-Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
-                                                    const ModelAndCage& meshes,
-                                                    std::span<const std::vector<Vec3>> poses) {
-  Result<StoredWeights> stored = read_weights(options.weights);
-  if (!stored) {
-    return stored.error();
+/// Vertices outside the chosen groups go back to rest.
+void keep_others(std::span<const Vec3> rest, std::span<const Index> chosen,
+                 std::vector<Vec3>& positions) {
+  std::vector<Vec3> result(rest.begin(), rest.end());
+  for (const Index v : chosen) {
+    result[v] = positions[v];
   }
+  positions = std::move(result);
+}
+
+/// Moves with the weights of a file.
+Result<Mover> stored_mover(const Options& options, const ModelAndCage& meshes) {
+  auto read = read_weights(options.weights);
+  if (!read) {
+    return read.error();
+  }
+  const auto stored = std::make_shared<StoredWeights>(*std::move(read));
   if (Status status = take_settings(options.binding.coordinates, *stored); !status) {
     return about_file(options.weights, status.error());
   }
@@ -183,20 +203,21 @@ Result<std::vector<std::vector<Vec3>>> apply_stored(const Options& options,
   if (!rule) {
     return about_file(options.binding.cage, rule.error());
   }
-  std::vector<std::vector<Vec3>> results;
-  for (const std::vector<Vec3>& pose : poses) {
-    std::vector<Vec3> moved = bound;
-    move_to_pose(stored->weights, PosedColumns(**rule, pose), bound, moved);
-    results.push_back(for_all ? std::move(moved) : with_part(meshes, moved));
-  }
-  return results;
+  return Mover(
+      [stored, for_all, &bound, &meshes, rule = *rule](std::span<const std::vector<Vec3>> poses) {
+        std::vector<std::vector<Vec3>> results;
+        for (const std::vector<Vec3>& pose : poses) {
+          std::vector<Vec3> moved = bound;
+          move_to_pose(stored->weights, PosedColumns(*rule, pose), bound, moved);
+          results.push_back(for_all ? std::move(moved) : with_part(meshes, moved));
+        }
+        return Result<std::vector<std::vector<Vec3>>>(std::move(results));
+      });
 }
 
-/// Deforms without stored weights.
-Result<std::vector<std::vector<Vec3>>> deform_directly(const Options& options,
-                                                       const ModelAndCage& meshes,
-                                                       std::span<const std::vector<Vec3>> poses,
-                                                       const Session& session) {
+/// Moves without stored weights.
+Result<Mover> direct_mover(const Options& options, const ModelAndCage& meshes,
+                           const Session& session) {
   const Result<CoordinateSettings> settings = settings_of(options.binding.coordinates);
   if (!settings) {
     return settings.error();
@@ -205,27 +226,43 @@ Result<std::vector<std::vector<Vec3>>> deform_directly(const Options& options,
   if (!coordinates) {
     return coordinates.error();
   }
-  Result<StreamedPoses> streamed =
-      deform_streaming(**coordinates, poses, meshes.bound.mesh.positions, session.progress());
-  if (!streamed) {
-    return streamed.error();
-  }
-  warn_of_points(options.binding.cage, streamed->counts);
-  std::vector<std::vector<Vec3>> results;
-  for (const std::vector<Vec3>& moved : streamed->positions) {
-    results.push_back(with_part(meshes, moved));
-  }
-  return results;
+  const auto has_warned = std::make_shared<bool>(false); // the same points in every call
+  return Mover(
+      [coordinates = *coordinates, has_warned, &options, &meshes, &session](
+          std::span<const std::vector<Vec3>> poses) -> Result<std::vector<std::vector<Vec3>>> {
+        Result<StreamedPoses> streamed =
+            deform_streaming(*coordinates, poses, meshes.bound.mesh.positions, session.progress());
+        if (!streamed) {
+          return streamed.error();
+        }
+        if (!std::exchange(*has_warned, true)) {
+          warn_of_points(options.binding.cage, streamed->counts);
+        }
+        std::vector<std::vector<Vec3>> results;
+        for (const std::vector<Vec3>& moved : streamed->positions) {
+          results.push_back(with_part(meshes, moved));
+        }
+        return results;
+      });
 }
 
-/// Vertices outside the chosen groups go back to rest.
-void keep_others(std::span<const Vec3> rest, std::span<const Index> chosen,
-                 std::vector<Vec3>& positions) {
-  std::vector<Vec3> result(rest.begin(), rest.end());
-  for (const Index v : chosen) {
-    result[v] = positions[v];
+/// Either, with vertices that are not chosen left at rest.
+Result<Mover> make_mover(const Options& options, const ModelAndCage& meshes,
+                         const Session& session) {
+  Result<Mover> mover = options.weights.empty() ? direct_mover(options, meshes, session)
+                                                : stored_mover(options, meshes);
+  if (!mover) {
+    return mover.error();
   }
-  positions = std::move(result);
+  return Mover([move = *mover, &meshes](std::span<const std::vector<Vec3>> poses) {
+    auto results = move(poses);
+    if (results) {
+      for (std::vector<Vec3>& positions : *results) {
+        keep_others(meshes.model().positions, meshes.bound.vertices, positions);
+      }
+    }
+    return results;
+  });
 }
 
 std::string summary(std::span<const Vec3> rest, std::span<const Vec3> positions,
@@ -265,9 +302,96 @@ void warn_of_links(const ModelFile& model, const std::vector<Pose>& poses) {
   }
 }
 
+/// Whether all formats can be written, asked before the work.
+Status can_write_formats(const ModelFile& file, const std::vector<Pose>& poses) {
+  for (const Pose& pose : poses) {
+    const Status writable =
+        file.keeps_format(pose.output) ? success() : can_write_model(pose.output);
+    if (!writable) {
+      return writable;
+    }
+  }
+  return success();
+}
+
+/// What --json tells of the model in each pose, if it was asked for.
+class PoseFigures {
+public:
+  PoseFigures(const Options& options, const PolygonMesh& rest, const std::vector<Pose>& poses)
+      : options_(options), poses_(poses),
+        triangles_(options.json.empty() ? TriangleMesh() : to_triangle_mesh(rest)) {}
+
+  void add(std::size_t pose, std::span<const Vec3> positions) {
+    if (!options_.json.empty()) {
+      figures_.push_back(figures_of(triangles_, positions, poses_[pose]));
+    }
+  }
+
+  Status write() const {
+    return options_.json.empty() ? success()
+                                 : write_json(options_.json, {{"format", "cagewright-deform"},
+                                                              {"version", 1},
+                                                              {"model", options_.binding.model},
+                                                              {"cage", options_.binding.cage},
+                                                              {"poses", figures_},
+                                                              {"notes", notes_as_json()}});
+  }
+
+private:
+  const Options& options_;
+  const std::vector<Pose>& poses_;
+  TriangleMesh triangles_;
+  nlohmann::json figures_ = nlohmann::json::array();
+};
+
+/// Each pose of the model in a file of its own.
+int write_models(const std::vector<Pose>& poses, const ModelAndCage& meshes,
+                 const std::vector<std::vector<Vec3>>& cages, const Mover& move,
+                 const FrameSeen& seen, const Session& session) {
+  const ModelFile& file = meshes.file;
+  const std::vector<Vec3>& rest = file.mesh().positions;
+  const bool keeps_format =
+      std::ranges::any_of(poses, [&](const Pose& pose) { return file.keeps_format(pose.output); });
+  Result<FileNormals> stored_normals = file.normals();
+  if (!stored_normals && !keeps_format) {
+    stored_normals = FileNormals(); // broken ones are left out of other formats, and told
+  }
+  if (!stored_normals) {
+    return fail(stored_normals.error());
+  }
+  const Result<std::vector<std::vector<Vec3>>> results = move(cages);
+  if (!results) {
+    return fail(results.error());
+  }
+  NormalField normals;
+  if (!stored_normals->normals.empty()) {
+    normals = NormalField(file.mesh(), {stored_normals->of_corner, stored_normals->normals.size(),
+                                        stored_normals->normals});
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    normals.update((*results)[i]);
+    const Result<std::vector<FileNote>> notes =
+        file.write_moved((*results)[i], normals.normals(), poses[i].output);
+    if (!notes) {
+      return fail(notes.error());
+    }
+    if (i == 0) { // the others of a sequence lose the same
+      tell(*notes);
+    }
+    seen(i, (*results)[i]);
+    session.say(summary(rest, (*results)[i], poses[i].output));
+  }
+  warn_of_links(file, poses);
+  return done;
+}
+
 int run(const Options& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
-  const Result<std::vector<Pose>> poses = plan_outputs(options);
+  const Result<std::vector<std::string>> paths = expand(options.poses);
+  if (!paths) {
+    return fail(paths.error());
+  }
+  const Result<std::vector<Pose>> poses = plan_outputs(options, *paths);
   if (!poses) {
     return fail(poses.error());
   }
@@ -283,23 +407,11 @@ int run(const Options& options, const Session& session) {
   if (!cages) {
     return fail(cages.error());
   }
-  const ModelFile& file = meshes->file;
-  for (const Pose& pose : *poses) {
-    const Status writable =
-        file.keeps_format(pose.output) ? success() : can_write_model(pose.output);
-    if (!writable) {
+  const bool is_movement = holds_movement(options.output, poses->size());
+  if (!is_movement) {
+    if (const Status writable = can_write_formats(meshes->file, *poses); !writable) {
       return fail(writable.error());
     }
-  }
-  const std::vector<Vec3>& rest = file.mesh().positions;
-  const bool keeps_format =
-      std::ranges::any_of(*poses, [&](const Pose& pose) { return file.keeps_format(pose.output); });
-  Result<FileNormals> stored_normals = file.normals();
-  if (!stored_normals && !keeps_format) {
-    stored_normals = FileNormals(); // broken ones are left out of other formats, and told
-  }
-  if (!stored_normals) {
-    return fail(stored_normals.error());
   }
   // With weights from a file the cage was judged when they were made.
   if (options.weights.empty() || options.binding.strict) {
@@ -307,47 +419,26 @@ int run(const Options& options, const Session& session) {
       return fail_of_judge(status.error());
     }
   }
-  Result<std::vector<std::vector<Vec3>>> results =
-      options.weights.empty() ? deform_directly(options, *meshes, *cages, session)
-                              : apply_stored(options, *meshes, *cages);
-  if (!results) {
-    return fail(results.error());
+  const Result<Mover> move = make_mover(options, *meshes, session);
+  if (!move) {
+    return fail(move.error());
   }
-  NormalField normals;
-  if (!stored_normals->normals.empty()) {
-    normals = NormalField(file.mesh(), {stored_normals->of_corner, stored_normals->normals.size(),
-                                        stored_normals->normals});
+  PoseFigures figures(options, meshes->file.mesh(), *poses);
+  const FrameSeen seen = [&](std::size_t frame, std::span<const Vec3> positions) {
+    figures.add(frame, positions);
+  };
+  if (!is_movement) {
+    if (const int exit_code = write_models(*poses, *meshes, *cages, *move, seen, session);
+        exit_code != done) {
+      return exit_code;
+    }
+  } else if (const Status written = write_movement(meshes->file, *cages, *move, options.times,
+                                                   options.output, seen, session);
+             !written) {
+    return fail(written.error());
   }
-  nlohmann::json figures = nlohmann::json::array();
-  const TriangleMesh triangles =
-      options.json.empty() ? TriangleMesh() : to_triangle_mesh(file.mesh());
-  for (std::size_t i = 0; i < poses->size(); ++i) {
-    keep_others(rest, meshes->bound.vertices, (*results)[i]);
-    normals.update((*results)[i]);
-    const Result<std::vector<FileNote>> notes =
-        file.write_moved((*results)[i], normals.normals(), (*poses)[i].output);
-    if (!notes) {
-      return fail(notes.error());
-    }
-    if (i == 0) { // the others of a sequence lose the same
-      tell(*notes);
-    }
-    if (!options.json.empty()) {
-      figures.push_back(figures_of(triangles, (*results)[i], (*poses)[i]));
-    }
-    session.say(summary(rest, (*results)[i], (*poses)[i].output));
-  }
-  warn_of_links(file, *poses);
-  if (!options.json.empty()) {
-    if (const Status written = write_json(options.json, {{"format", "cagewright-deform"},
-                                                         {"version", 1},
-                                                         {"model", options.binding.model},
-                                                         {"cage", options.binding.cage},
-                                                         {"poses", std::move(figures)},
-                                                         {"notes", notes_as_json()}});
-        !written) {
-      return fail(written.error());
-    }
+  if (const Status written = figures.write(); !written) {
+    return fail(written.error());
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   session.say(fmt::format("{:.2f} s in all\n", seconds.count()));
@@ -363,17 +454,19 @@ void add_deform(CLI::App& app, Session& session) {
   command
       ->add_option("deformed-cage", options->poses,
                    "The cage with its vertices moved; several, or a quoted pattern such as "
-                   "'frame_*.obj', for a sequence")
+                   "'frame_*.obj', for a sequence: in the order of its numbers")
       ->required();
   command
       ->add_option("-o,--output", options->output,
                    "The model to write, with all that the original holds. For a sequence a folder, "
-                   "or a name with * for the name of the deformed cage")
+                   "or a name with * for the name of the deformed cage; or one file that holds the "
+                   "movement: a point cache (.pc2, .mdd) or an animated .glb")
       ->required();
   command->add_option("--weights", options->weights, "Use the weights that bind has stored");
   command->add_option("--json", options->json,
                       "Write to this file as JSON what became of the model in each pose: stretch, "
                       "change of volume, triangles that were flipped");
+  add_time_options(*command, options->times);
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };
   });

@@ -11,9 +11,14 @@
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
 #include <cagewright/deform/deformer.h>
+#include <cagewright/deform/match_pose.h>
+#include <cagewright/deform/normals.h>
 #include <cagewright/deform/standard_poses.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
+#include <cagewright/io/mesh_format.h>
+#include <cagewright/io/model_file.h>
+#include <cagewright/io/point_cache.h>
 #include <cagewright/io/read_mesh.h>
 #include <cagewright/io/read_vertex_weights.h>
 #include <cagewright/io/rewrite_positions.h>

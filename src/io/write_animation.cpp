@@ -1,77 +1,31 @@
 #include <cagewright/io/write_animation.h>
 
 #include "io/atomic_file.h"
+#include "io/float_range.h"
 #include "io/write_glb_animation.h"
+#include <cagewright/io/point_cache.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cctype>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
 #include <string>
 
 namespace cagewright {
 namespace {
 
-template <class T> void put(std::string& bytes, T value, std::endian order) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), &value, sizeof(T));
-  if (order != std::endian::native) {
-    std::ranges::reverse(raw);
-  }
-  bytes.append(raw.data(), raw.size());
-}
-
-/// The head of the file; frames follow.
-std::string head_of(const MovingMesh& mesh, bool is_pc2) {
-  std::string bytes;
-  const auto frames = static_cast<std::int32_t>(mesh.shares.size());
-  const auto points = static_cast<std::int32_t>(mesh.rest.positions.size());
-  if (is_pc2) {
-    constexpr std::endian little = std::endian::little;
-    bytes.append("POINTCACHE2\0", 12);
-    put<std::int32_t>(bytes, 1, little); // version
-    put(bytes, points, little);
-    put(bytes, static_cast<float>(mesh.first_frame), little);
-    put(bytes, 1.0F, little); // frames from one sample to the next
-    put(bytes, frames, little);
-    return bytes;
-  }
-  constexpr std::endian big = std::endian::big;
-  put(bytes, frames, big);
-  put(bytes, points, big);
-  for (std::int32_t f = 0; f < frames; ++f) {
-    put(bytes, static_cast<float>((mesh.first_frame + f) / mesh.frames_per_second), big);
-  }
-  return bytes;
-}
-
-Status write_cache(const MovingMesh& mesh, const std::filesystem::path& path, bool is_pc2,
+Status write_cache(const MovingMesh& mesh, const std::filesystem::path& path,
                    const Progress& progress) {
-  Result<PartFile> file = PartFile::create(path);
+  Result<PointCacheWriter> file =
+      PointCacheWriter::create(path, mesh.rest.positions.size(), mesh.shares.size(),
+                               {mesh.first_frame, mesh.frames_per_second});
   if (!file) {
     return file.error();
   }
-  if (Status s = file->append(head_of(mesh, is_pc2)); !s) {
-    return s;
-  }
-  const std::endian order = is_pc2 ? std::endian::little : std::endian::big;
-  std::string bytes;
   for (std::size_t f = 0; f < mesh.shares.size(); ++f) {
     if (progress.cancelled()) {
       return Error::cancelled();
     }
     progress(static_cast<double>(f) / static_cast<double>(mesh.shares.size()), "writing");
-    bytes.clear();
-    for (const Vec3& p : mesh.at(f)) {
-      for (int k = 0; k < 3; ++k) {
-        put(bytes, static_cast<float>(p[k]), order);
-      }
-    }
-    if (Status s = file->append(bytes); !s) {
+    if (Status s = file->append(mesh.at(f)); !s) {
       return s;
     }
   }
@@ -90,12 +44,7 @@ Status check(const MovingMesh& mesh, const std::filesystem::path& path) {
                       std::to_string(mesh.shapes[k].size()) + " vertices, the mesh has " +
                       std::to_string(count));
     }
-    // (A float holds it, and it is no NaN.)
-    const auto fits = [](const Vec3& p) {
-      return p.cwiseAbs().maxCoeff() <= static_cast<double>(std::numeric_limits<float>::max()) &&
-             p.allFinite();
-    };
-    if (!std::ranges::all_of(mesh.shapes[k], fits)) {
+    if (!std::ranges::all_of(mesh.shapes[k], fits_floats)) {
       return Error{ErrorCode::cannot_write,
                    path.string() + ": a position of shape " + std::to_string(k) +
                        " is not finite, or too large for the file's numbers"};
@@ -109,11 +58,6 @@ Status check(const MovingMesh& mesh, const std::filesystem::path& path) {
   }
   if (mesh.shapes.empty() || mesh.shares.empty()) {
     return mismatch("there is no shape, or no frame");
-  }
-  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
-  if (count > most || mesh.shares.size() > most) {
-    return Error{ErrorCode::unsupported,
-                 path.string() + ": more vertices or frames than the file can count"};
   }
   return success();
 }
@@ -136,7 +80,7 @@ Status write_animation(const MovingMesh& mesh, const std::filesystem::path& path
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension != ".glb" && extension != ".pc2" && extension != ".mdd") {
+  if (extension != ".glb" && !is_point_cache(path)) {
     return Error{ErrorCode::unsupported,
                  path.string() + ": movements are written as .glb, .pc2 or .mdd"};
   }
@@ -147,7 +91,7 @@ Status write_animation(const MovingMesh& mesh, const std::filesystem::path& path
     const Result<std::string> bytes = format_glb_animation(mesh, path, progress);
     return bytes ? write_file_atomically(path, *bytes) : Status(bytes.error());
   }
-  return write_cache(mesh, path, extension == ".pc2", progress);
+  return write_cache(mesh, path, progress);
 }
 
 } // namespace cagewright

@@ -398,6 +398,137 @@ class Deform(InAFolder):
             self.assertEqual("faces are others" in done.stderr, name != "turned", done.stderr)
 
 
+def frames_of_pc2(data):
+    """First frame, and for each frame its positions: what the format says, read by hand."""
+    signature, version, points, first, step, frames = struct.unpack_from("<12siiffi", data)
+    assert (signature, version, step) == (b"POINTCACHE2\0", 1, 1.0)
+    assert len(data) == 32 + 12 * points * frames
+    numbers = struct.unpack_from(f"<{3 * points * frames}f", data, 32)
+    rows = [numbers[3 * i:3 * i + 3] for i in range(points * frames)]
+    return first, [rows[points * f:points * (f + 1)] for f in range(frames)]
+
+
+def frames_of_mdd(data):
+    frames, points = struct.unpack_from(">ii", data)
+    assert len(data) == 8 + 4 * frames + 12 * points * frames
+    times = struct.unpack_from(f">{frames}f", data, 8)
+    numbers = struct.unpack_from(f">{3 * points * frames}f", data, 8 + 4 * frames)
+    rows = [numbers[3 * i:3 * i + 3] for i in range(points * frames)]
+    return times, [rows[points * f:points * (f + 1)] for f in range(frames)]
+
+
+def frames_of_animated_glb(data):
+    """For each frame the positions of the vertices of the file, and the times."""
+    document, binary = parts_of_glb(data)
+
+    def floats(number):
+        accessor = document["accessors"][number]
+        width = {"VEC3": 3, "SCALAR": 1}[accessor["type"]]
+        begin = document["bufferViews"][accessor["bufferView"]]["byteOffset"]
+        numbers = struct.unpack_from(f"<{width * accessor['count']}f", binary, begin)
+        return [numbers[i:i + width] for i in range(0, len(numbers), width)] if width > 1 else numbers
+
+    node = document["nodes"][0]
+    primitive = document["meshes"][node["mesh"]]["primitives"][0]
+    rest = floats(primitive["attributes"]["POSITION"])
+    targets = [floats(target["POSITION"]) for target in primitive["targets"]]
+    sampler = document["animations"][0]["samplers"][0]
+    weights = floats(sampler["output"])
+    frames = []
+    for f in range(len(weights) // len(targets)):
+        shares = weights[f * len(targets):(f + 1) * len(targets)]
+        frames.append([tuple(p[k] + node["translation"][k] + sum(w * t[v][k] for w, t in zip(shares, targets))
+                             for k in range(3)) for v, p in enumerate(rest)])
+    return floats(sampler["input"]), frames
+
+
+class Movement(InAFolder):
+    """Sequences in one file, read back by what the formats say."""
+
+    def setUp(self):
+        super().setUp()
+        for i in (1, 2, 9, 10):  # as a shell lists them, 10 comes before 2
+            self.file(f"frame_{i}.obj", cage(lambda x, y, z, i=i: (x - 0.1 * i * y, y + 0.01 * i * x * z, z)))
+        self.frames = [self.folder / f"frame_{i}.obj" for i in (1, 2, 9, 10)]
+        done = run("deform", self.model, self.rest, *self.frames, "-o", f"{self.folder}/m_*.obj")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.expected = [rows(self.folder / f"m_frame_{i}.obj", "v") for i in (1, 2, 9, 10)]
+
+    def assert_frames(self, found, tolerance=1e-6):
+        self.assertEqual(len(found), len(self.expected))
+        for one, other in zip(found, self.expected):
+            self.assert_near(one, other, tolerance)
+
+    def deform(self, *words, code=DONE):
+        done = run("deform", self.model, self.rest, *words)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def test_point_caches(self):
+        pc2, mdd = self.folder / "model.pc2", self.folder / "MODEL.MDD"
+        said = self.deform(self.folder / "frame_*.obj", "-o", pc2)
+        self.assertIn("4 frames of 16 vertices", said.stdout)
+        self.assertEqual(said.stderr, "")
+        first, frames = frames_of_pc2(pc2.read_bytes())
+        self.assertEqual(first, 1)
+        self.assert_frames(frames)
+        self.deform(*self.frames, "-o", mdd, "--fps", 25, "--first-frame", 50)
+        times, frames = frames_of_mdd(mdd.read_bytes())
+        self.assert_near([times], [[50 / 25, 51 / 25, 52 / 25, 53 / 25]], 1e-6)
+        self.assert_frames(frames)
+
+    def test_the_shells_order_is_mended_and_ones_own_is_kept(self):
+        pc2 = self.folder / "model.pc2"
+        said = self.deform(*sorted(self.frames), "-o", pc2)
+        self.assertIn("order of their numbers", said.stderr)
+        self.assertEqual(said.stderr.count("\n"), 1)
+        self.assert_frames(frames_of_pc2(pc2.read_bytes())[1])
+        there_and_back = self.frames + self.frames[-2::-1]
+        self.assertEqual(self.deform(*there_and_back, "-o", pc2).stderr, "")
+        self.expected += self.expected[-2::-1]
+        self.assert_frames(frames_of_pc2(pc2.read_bytes())[1])
+
+    def test_one_frame_is_a_movement_only_in_a_point_cache(self):
+        self.deform(self.frames[2], "-o", self.folder / "one.pc2")
+        self.expected = self.expected[2:3]
+        self.assert_frames(frames_of_pc2((self.folder / "one.pc2").read_bytes())[1])
+        self.deform(self.frames[2], "-o", self.folder / "one.glb")
+        self.assertNotIn("animations", parts_of_glb((self.folder / "one.glb").read_bytes())[0])
+
+    def test_animated_glb(self):
+        glb = self.folder / "model.glb"
+        self.deform(*self.frames, "-o", glb, "--fps", 10)
+        times, frames = frames_of_animated_glb(glb.read_bytes())
+        self.assert_near([times], [[0, 0.1, 0.2, 0.3]], 1e-6)
+        # The file's vertices are split at texture points: each is one of the model's.
+        for found, expected in zip(frames, self.expected):
+            for p in found:
+                self.assertLess(min(max(abs(a - b) for a, b in zip(p, q)) for q in expected), 1e-6)
+
+    def test_stored_weights_and_groups(self):
+        weights, pc2 = self.folder / "weights.npz", self.folder / "model.pc2"
+        run("bind", self.model, self.rest, "-o", weights)
+        self.deform(*self.frames, "-o", pc2, "--weights", weights)
+        self.assert_frames(frames_of_pc2(pc2.read_bytes())[1], 1e-5)
+        self.deform(*self.frames, "-o", pc2, "--only", "large")
+        for frame, expected in zip(frames_of_pc2(pc2.read_bytes())[1], self.expected):
+            self.assert_near(frame[:8], expected[:8], 1e-6)
+            self.assert_near(frame[8:], rows(self.model, "v")[8:], 1e-6)
+
+    def test_refusals_leave_nothing(self):
+        out = self.folder / "model.mdd"
+        wrong = self.file("wrong.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.deform(self.frames[0], wrong, "-o", out, code=BAD_INPUT)
+        self.assertFalse(out.exists())
+        huge = self.file("huge.obj", cage(lambda x, y, z: (x * 1e39, y, z)))
+        self.assertIn("too large", self.deform(self.frames[0], huge, "-o", out, code=BAD_INPUT).stderr)
+        self.deform(*self.frames, "-o", out, "--fps", 0, code=BAD_INPUT)
+        said = self.deform(*self.frames, "-o", self.folder / "nowhere" / "model.pc2", code=BAD_INPUT)
+        self.assertIn("nowhere", said.stderr)
+        self.assertFalse(out.exists())
+        self.assertEqual(list(self.folder.glob(".cagewright*")), [])
+
+
 class Bind(InAFolder):
     def setUp(self):
         super().setUp()

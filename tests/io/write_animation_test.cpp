@@ -1,3 +1,4 @@
+#include <cagewright/io/point_cache.h>
 #include <cagewright/io/write_animation.h>
 
 #include "io/files.h"
@@ -101,6 +102,31 @@ TEST(WriteAnimation, WritesPointCaches) {
   EXPECT_FLOAT_EQ(number_at<float>(mdd, 8, big), 7.0F / 25);
   EXPECT_FLOAT_EQ(number_at<float>(mdd, 20, big), 10.0F / 25);
   expect_frames(mesh, mdd, 24, big);
+}
+
+TEST(PointCacheWriter, HoldsToWhatItWasTold) {
+  const TemporaryFolder folder;
+  const std::vector<Vec3> frame = {Vec3(0, 0, 0), Vec3(1, 2, 3)};
+  const auto message = [](const auto& status) {
+    return status ? std::string("no error") : status.error().message;
+  };
+  EXPECT_FALSE(PointCacheWriter::create(folder / "a.abc", 2, 1));
+  EXPECT_FALSE(PointCacheWriter::create(folder / "a.pc2", 2, 0));
+  EXPECT_FALSE(PointCacheWriter::create(folder / "a.pc2", 2, 1, {1, 0}));
+  {
+    auto cache = PointCacheWriter::create(folder / "a.pc2", 2, 2);
+    ASSERT_TRUE(cache) << message(cache);
+    EXPECT_FALSE(cache->append({frame.data(), 1})) << "one position of two";
+    EXPECT_TRUE(cache->append(frame));
+    EXPECT_NE(message(cache->commit()).find("1 frames of 2"), std::string::npos);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing half done appears";
+  auto cache = PointCacheWriter::create(folder / "a.mdd", 2, 1);
+  ASSERT_TRUE(cache) << message(cache);
+  EXPECT_TRUE(cache->append(frame));
+  EXPECT_FALSE(cache->append(frame)) << "one more than was told";
+  EXPECT_TRUE(cache->commit());
+  EXPECT_EQ(test::bytes_of(folder / "a.mdd").size(), 8U + 4 + 24);
 }
 
 /// What a GLB file holds.

@@ -35,10 +35,7 @@ struct MovingMesh {
 ///  - .glb: glTF 2.0 with a morph target for each shape, and an animation of their weights; faces
 ///    are cut into triangles. Each frame is met to float precision, reckoned from the middle of the
 ///    mesh; between frames it moves evenly.
-///  - .pc2: "Point Cache 2", as read by Blender, 3ds Max, Houdini: V floats a frame, little endian.
-///  - .mdd: LightWave's point cache, likewise with the time of each frame, big endian.
-/// Point caches hold positions alone, in the order of the mesh's vertices, and go with the mesh at
-/// rest, in a file of its own.
+///  - .pc2, .mdd: point caches, see PointCacheWriter.
 ///
 /// The file appears under its name only when complete. Errors: unsupported (another extension, or
 /// more than a format can count), mismatch (other numbers of positions), cannot_write (also for a
