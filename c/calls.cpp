@@ -139,6 +139,9 @@ cw_code call(cw_error** error, const std::function<Status()>& body) noexcept {
   }
 }
 
+// More are of no use, and the arena has a slot for each.
+constexpr int most_threads = 1024;
+
 cw_code call(cw_error** error, const cw_control* given,
              const std::function<Status(const Progress&)>& body) noexcept {
   return call(error, [&]() -> Status {
@@ -152,7 +155,8 @@ cw_code call(cw_error** error, const cw_control* given,
     if (control.cancelled != nullptr) {
       watcher.emplace(control.cancelled, control.user, stop);
     }
-    tbb::task_arena arena(control.threads > 0 ? control.threads : tbb::task_arena::automatic);
+    tbb::task_arena arena(control.threads > 0 ? std::min(control.threads, most_threads)
+                                              : tbb::task_arena::automatic);
     return arena.execute([&] { return body(progress); });
   });
 }

@@ -55,6 +55,15 @@ def points(numbers, what):
     return array_of(numbers, what, np.float64)
 
 
+def finite_points(numbers, what):
+    """The same where a coordinate that is nowhere would take a model with it for good."""
+    array, keep = points(numbers, what)
+    fine = np.isfinite(keep).all(axis=1)
+    if not fine.all():
+        raise ValueError(f"{what}: row {int(np.argmin(fine))} has a coordinate that is not a finite number")
+    return array, keep
+
+
 def _has(thing, *names):
     return all(hasattr(thing, name) for name in names)
 

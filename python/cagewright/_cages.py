@@ -43,10 +43,11 @@ class Cage(Mesh):
 
 
 def _text(value):
-    if value is True or value is False:
+    if isinstance(value, (bool, np.bool_)):
         return "on" if value else "off"
     if isinstance(value, (float, np.floating)):
-        return repr(float(value))
+        number = float(value)
+        return str(int(number)) if number.is_integer() else repr(number)  # 60.0 vertices are 60
     return str(value)
 
 
@@ -121,11 +122,12 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
     vertices, faces = _arrays.two_parts(vertices, faces, "the model")
     model = _arrays.mesh_view(vertices, faces, "the model")
     given = {name: value for name, value in options.items() if value is not None}
+    quads = quads if isinstance(quads, str) else bool(quads)
     for name, value, initial in [("method", method, "envelope"), ("symmetry", symmetry, "auto"),
                                  ("pieces", pieces, "together"), ("quads", quads, False),
                                  ("clearance", clearance, 0.002), ("faces", num_faces, None),
                                  ("max-gap", max_gap, None)]:
-        if value != initial:
+        if value is not None and value != initial:
             given[name] = value
     if num_vertices is not None and num_vertices is not _DEFAULT_VERTICES:
         given["vertices"] = num_vertices

@@ -2,11 +2,13 @@
 
 import collections
 import ctypes
+import operator
 import threading
 
 from ._library import Control, Handle, Report, checked, lib
 from .errors import Cancelled
 
+_MOST_THREADS = 1024  # more make no difference
 _PATIENCE = 0.4  # seconds that a call gets to stop before Ctrl-C is answered without it
 
 
@@ -18,9 +20,13 @@ def control(threads):
 def _count(threads):
     if threads is None:
         return 0
-    if threads < 1:
-        raise ValueError(f"threads: {threads} is not a number of threads; give 1 or more, or None for all cores")
-    return int(threads)
+    try:
+        number = operator.index(threads)
+    except TypeError:
+        number = 0
+    if number < 1:
+        raise ValueError(f"threads: {threads!r} is not a number of threads; give 1 or more, or None for all cores")
+    return min(number, _MOST_THREADS)
 
 
 class _Call:

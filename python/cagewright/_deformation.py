@@ -20,6 +20,12 @@ def _settings_text(settings):
     return " ".join(words).encode() if words else None
 
 
+def _kind_bytes(kind):
+    if not isinstance(kind, str):
+        raise ValueError(f"the kind of coordinates is a word, such as \"mean_value\", not {kind!r}")
+    return kind.encode()
+
+
 class CSR(namedtuple("CSR", ["data", "indices", "indptr", "shape"])):
     """A sparse matrix in the form of scipy's csr_matrix:
     ``scipy.sparse.csr_matrix((w.data, w.indices, w.indptr), shape=w.shape)``.
@@ -49,7 +55,8 @@ def coordinates(kind, points, cage_vertices, cage_faces=None, *, sparse=False, t
     """How much each point follows each vertex of a cage.
 
     Args:
-        kind: of coordinates: "mean_value" (defined everywhere, exact on the cage).
+        kind: of coordinates, one of those of coordinate_kinds(): "mean_value" (defined everywhere, exact on the cage), "green"
+            (bends and twists without shearing), and others.
         points: P x 3, in the cage's units.
         cage_vertices, cage_faces: a closed cage, as the model of generate(); or an object that has both.
         sparse: leave out zeros: a CSR instead of an array.
@@ -58,7 +65,8 @@ def coordinates(kind, points, cage_vertices, cage_faces=None, *, sparse=False, t
 
     Returns:
         float64, P x C weights W: rows sum to 1, and ``W @ cage_vertices`` gives the points; ``W @ moved_vertices``
-        where they go. With sparse=True a CSR of the same.
+        where they go. With sparse=True a CSR of the same. Kinds that follow more than the vertices have columns for
+        that behind those of the vertices, as "green" has for the normals of faces: a Deformer knows how to apply them.
 
     Raises:
         InputError: the cage is open, or there is no such kind or setting.
@@ -69,12 +77,14 @@ def coordinates(kind, points, cage_vertices, cage_faces=None, *, sparse=False, t
     cage_vertices, cage_faces = _arrays.two_parts(cage_vertices, cage_faces, "the cage")
     cage = _arrays.mesh_view(cage_vertices, cage_faces, "the cage")
     where, keep = _arrays.points(points, "the points")
-    text = _settings_text(settings)
+    kind, text = _kind_bytes(kind), _settings_text(settings)
+    columns = ctypes.c_size_t()
+    checked(lib.cw_coordinate_columns, kind, text, ctypes.byref(cage), ctypes.byref(columns))
 
     def work(control):
-        weights = np.empty((where.rows, cage.positions.rows))
-        checked(lib.cw_coordinates, kind.encode(), text, ctypes.byref(where), ctypes.byref(cage),
-                ctypes.byref(control), weights.ctypes.data, 0)
+        weights = np.empty((where.rows, columns.value))
+        checked(lib.cw_coordinates, kind, text, ctypes.byref(where), ctypes.byref(cage),
+                ctypes.byref(control), weights.ctypes.data, columns.value)
         return weights
 
     weights = run(work, threads, progress)
@@ -92,7 +102,7 @@ class Deformer:
     Args:
         vertices, faces: the model, P vertices, as for generate().
         cage_vertices, cage_faces: its cage at rest, C vertices. Objects that have both may stand for either.
-        coordinates: the kind, as for coordinates().
+        coordinates: the kind, one of those of coordinate_kinds(), as for coordinates().
         storage: how weights are kept: "single" (floats), "full" (doubles), or "compact" (16 bits).
         normals: keep normals up to date.
         threads, progress: as for generate(). `threads` holds for later moves, too.
@@ -114,7 +124,7 @@ class Deformer:
         parts = _arrays.four_parts(vertices, faces, cage_vertices, cage_faces)
         model = _arrays.mesh_view(*parts[:2], "the model")
         cage = _arrays.mesh_view(*parts[2:], "the cage")
-        options = DeformerOptions(size=ctypes.sizeof(DeformerOptions), coordinates=coordinates.encode(),
+        options = DeformerOptions(size=ctypes.sizeof(DeformerOptions), coordinates=_kind_bytes(coordinates),
                                   settings=_settings_text(settings), storage=_STORAGES[storage],
                                   no_normals=int(not normals))
 
@@ -134,12 +144,15 @@ class Deformer:
         """Moves all vertices of the cage, and the model with them.
 
         Args:
-            cage_vertices: C x 3.
+            cage_vertices: C x 3; or an object that has them as vertices, such as another Cage.
 
         Returns:
             `positions`: a view, which the next move changes.
         """
-        to, keep = _arrays.points(cage_vertices, "the cage's vertices")
+        parts = _arrays.parts_of(cage_vertices)
+        if parts is not None:
+            cage_vertices = parts[0]
+        to, keep = _arrays.finite_points(cage_vertices, "the cage's vertices")
         checked(lib.cw_deformer_set_cage, self._handle.pointer, ctypes.byref(to), ctypes.byref(self._control))
         del keep
         return self.positions
@@ -154,8 +167,11 @@ class Deformer:
         Returns:
             `positions`: a view, which the next move changes.
         """
-        which, keep = _arrays.array_of(np.atleast_1d(vertices), "the numbers of vertices", np.int64)
-        where, keep_too = _arrays.points(np.reshape(to, (-1, 3)), "the positions")
+        vertices = np.atleast_1d(vertices)
+        if vertices.size and vertices.dtype.kind not in "iu":
+            raise ValueError(f"the numbers of vertices are integers, not {vertices.dtype}; of a mask numpy.flatnonzero() makes them")
+        which, keep = _arrays.array_of(vertices, "the numbers of vertices", np.int64)
+        where, keep_too = _arrays.finite_points(np.reshape(to, (-1, 3)), "the positions")
         checked(lib.cw_deformer_move, self._handle.pointer, ctypes.byref(which), ctypes.byref(where),
                 ctypes.byref(self._control))
         del keep, keep_too

@@ -94,6 +94,7 @@ _FUNCTIONS = {
     "cw_check": (c_int, [_mesh, _mesh, c_int, c_size_t, _control, _out, _out]),
     "cw_compare": (c_int, [_mesh, _mesh, POINTER(_text), c_size_t, c_int, _control, _out, _out]),
     "cw_info": (c_int, [_mesh, c_int, _control, _out, _out]),
+    "cw_coordinate_columns": (c_int, [_text, _text, _mesh, POINTER(c_size_t), _out]),
     "cw_coordinates": (c_int, [_text, _text, _array, _mesh, _control, c_void_p, c_size_t, _out]),
     "cw_coordinates_describe": (c_int, [_out, _out]),
     "cw_deformer_bind": (c_int, [_mesh, _mesh, POINTER(DeformerOptions), _control, _out, _out]),

@@ -62,7 +62,10 @@ def render(vertices, faces=None, cage_vertices=None, cage_faces=None, *, size=(1
     cage = _arrays.mesh_view(*parts[2:], "the cage") if has_cage else None
     angles = [angle for view in ([views] if _is_one(views) else views) for angle in _angles(view)]
     block = (ctypes.c_double * len(angles))(*angles)
-    width, height = size
+    try:
+        width, height = (int(pixels) for pixels in size)
+    except (TypeError, ValueError):
+        raise ValueError(f"size: {size!r} is not a width and a height in pixels") from None
     options = RenderOptions(size=ctypes.sizeof(RenderOptions), width=width, height=height, views=block,
                             view_count=len(angles) // 2, z_up=int(up == "z"), background=_BACKGROUNDS[background],
                             no_shadows=int(not shadows), no_ambient_occlusion=int(not ambient_occlusion),

@@ -30,6 +30,8 @@ private:
   int left_ = most_runs;
 };
 
+constexpr const char* no_smaller = "no smaller cage of quads was found";
+
 bool is_within(const PolygonMesh& cage, const QuadTask& task) {
   const int vertices = vertex_limit(task.options);
   const int faces = task.options.faces;
@@ -55,6 +57,9 @@ Result<QuadStage> quads_of_blocks(const QuadTask& task, const QuadOptions& quads
   }
   QuadStage stage{{}, std::move(*made), std::nullopt};
   stage.report.reached = is_within(stage.made.cage, task);
+  if (!stage.report.reached) {
+    stage.report.why_not = no_smaller;
+  }
   return stage;
 }
 
@@ -174,7 +179,7 @@ Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
     if (options.faces > 0 && faces > most) {
       fits = false;
       stage.report.reached = false;
-      stage.report.why_not = "no smaller cage of quads was found";
+      stage.report.why_not = no_smaller;
       // In the end as few triangles as there may be faces: that is enough.
       const double factor = 0.98 * static_cast<double>(most) / static_cast<double>(faces);
       triangles = k + 2 < attempts ? static_cast<int>(factor * triangles) : options.faces;

@@ -261,8 +261,22 @@ class Generate(InAFolder):
     def test_same_on_any_number_of_threads(self):
         cage = cagewright.generate(V, F, threads=1, **QUICK)
         self.assertEqual(cage.vertices.tobytes(), CAGE.vertices.tobytes())
-        with self.assertRaisesRegex(ValueError, "threads"):
-            cagewright.generate(V, F, threads=0)
+        for threads in (0, 1.5, "2"):
+            with self.assertRaisesRegex(ValueError, "threads"):
+                cagewright.generate(V, F, threads=threads)
+        cagewright.info(V, F, resolution=8, threads=10**9)  # so many make no difference
+
+    def test_takes_what_means_the_same(self):
+        for same in ({"num_vertices": 60.0}, {"symmetry": False},
+                     {"quads": 0}, {"pieces": None}):
+            with self.subTest(**same):
+                self.assertEqual(cagewright.generate(V, F, **{**QUICK, **same}).vertices.tobytes(), CAGE.vertices.tobytes())
+
+    def test_a_shortfall_has_a_reason(self):
+        box = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+        faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+        with self.assertWarnsRegex(cagewright.NotAsAsked, "not as asked for: [a-z]"):
+            cagewright.generate(box, faces, num_vertices=8, envelope_resolution=8, rounds=1, quads=True)
 
     def test_warns_of_what_is_not_as_asked(self):
         with self.assertWarnsRegex(cagewright.NotAsAsked, "not as asked for: "):
@@ -302,38 +316,59 @@ class Generate(InAFolder):
             cagewright.generate(V, F, progress=lambda fraction, step: 1 / 0, **QUICK)
 
     def test_releases_the_interpreter(self):
-        worker = threading.Thread(target=cagewright.info, args=(V, F))
-        worker.start()
-        steps = 0
-        while worker.is_alive():
-            steps += 1
-        self.assertGreater(steps, 100)
+        """While the library works on this thread's behalf another goes on counting."""
+        counted, stop = [0], threading.Event()
 
-    def test_interrupt(self):
-        script = self.folder / "script.py"
-        script.write_text("""
-import sys, time
+        def count():
+            while not stop.is_set():
+                counted[0] += 1
+        for work in (lambda: cagewright.generate(V, F, **QUICKEST), lambda: cagewright.check(V, F, *CAGE)):
+            stop.clear()
+            counted[0] = 0
+            counter = threading.Thread(target=count)
+            counter.start()
+            while counted[0] == 0:  # it has begun
+                pass
+            before = counted[0]
+            work()
+            after = counted[0]
+            stop.set()
+            counter.join()
+            self.assertGreater(after - before, 1000)
+
+    def interrupt(self, work):
+        """Sends Ctrl-C to a script that does `work`, once it has told progress, and sees how it ends."""
+        script, model = self.folder / "script.py", self.folder / "model.npz"
+        np.savez(model, V=np.concatenate([V * s for s in np.linspace(1, 1.001, 200)]),
+                 F=np.concatenate([F + i * len(V) for i in range(200)]), C=CAGE.vertices, G=CAGE.faces)
+        script.write_text(f"""
+import sys, threading, time
 sys.path.insert(0, sys.argv[1])
-import cagewright
-V, F = cagewright.read_mesh(sys.argv[2])
+import cagewright, numpy
+data = numpy.load(sys.argv[2])
+V, F, C, G = (data[name] for name in "VFCG")
 def progress(fraction, step):
     print("at work", flush=True)
+    time.sleep(0.001)
 try:
-    cagewright.generate(V, F, num_vertices=60, quads=True, progress=progress)
-    print("made")
+    while True:  # however quick the machine is
+        {work}
 except KeyboardInterrupt:
     print("stopped", flush=True)
 """)
-        model = self.folder / "model.obj"
-        cagewright.write_mesh(model, V, F)
-        child = subprocess.Popen([sys.executable, str(script), str(PACKAGE), str(model)], stdout=subprocess.PIPE, text=True)
+        child = subprocess.Popen([sys.executable, str(script), str(PACKAGE), str(model)], stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE, text=True)
         self.assertEqual(child.stdout.readline(), "at work\n")
         child.send_signal(signal.SIGINT)
-        rest = child.communicate()[0].split("\n")
-        self.assertIn("stopped", rest)
-        self.assertNotIn("made", rest)
-        self.assertEqual(child.returncode, 0)
+        said, errors = child.communicate(timeout=60)
+        self.assertIn("stopped", said.split("\n"), errors)
+        self.assertEqual(child.returncode, 0, errors)
 
+    def test_interrupt_of_generate(self):
+        self.interrupt("cagewright.generate(V[:288], F[:576], num_vertices=60, quads=True, progress=progress)")
+
+    def test_interrupt_of_binding(self):
+        self.interrupt("cagewright.Deformer(V, F, C * 2, G, progress=progress)")
 
 class Others(InAFolder):
     def test_check(self):
@@ -407,6 +442,34 @@ class Others(InAFolder):
         with self.assertRaises(cagewright.InputError):
             cagewright.coordinates("mean_value", V, CAGE.vertices, CAGE.faces[1:])
 
+    def test_every_kind_of_coordinates(self):
+        box = np.array([[x, y, z] for x in (-2, 2) for y in (-2, 2) for z in (-2, 2)], float)
+        faces = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+        for kind in [each["name"] for each in cagewright.coordinate_kinds()]:
+            with self.subTest(kind=kind):
+                weights = cagewright.coordinates(kind, V, box, faces)
+                self.assertEqual(len(weights), len(V))
+                self.assertGreaterEqual(weights.shape[1], len(box))
+                self.assertTrue(np.isfinite(weights).all())
+                sparse = cagewright.coordinates(kind, V, box, faces, sparse=True)
+                self.assertTrue((sparse.toarray() == weights).all())
+                deformer = cagewright.Deformer(V, F, box, faces, coordinates=kind, storage="full")
+                self.assertEqual(deformer.positions.tobytes(), V.tobytes())
+                self.assertLess(abs(deformer(box + [1, 2, 3]) - V - [1, 2, 3]).max(), 1e-6)
+                self.assertTrue(np.isfinite(deformer(box * [1, 1.3, 1])).all())
+        self.assertEqual(cagewright.coordinate_kinds()[0]["name"], "mean_value")
+
+    def test_bounds_of_what_is_written(self):
+        """The library is told how wide a row is, and refuses where the weights do not fit."""
+        import ctypes
+        from cagewright import _library
+        mesh, where = _arrays.mesh_view(*CAGE, "the cage"), _arrays.points(V, "the points")[0]
+        room = np.full((len(V), 3), 7.0)
+        with self.assertRaisesRegex(cagewright.InputError, "does not fit"):
+            _library.checked(lib.cw_coordinates, b"mean_value", None, ctypes.byref(where), ctypes.byref(mesh), None,
+                             room.ctypes.data, 3)
+        self.assertTrue((room == 7).all())
+
     def test_deformer(self):
         deformer = cagewright.Deformer(V, F, *CAGE, storage="full")
         self.assertEqual(deformer.positions.tobytes(), V.tobytes())
@@ -431,6 +494,19 @@ class Others(InAFolder):
                       lambda: cagewright.Deformer(V, F, CAGE, coordinates="teapot")):
             with self.assertRaises(ValueError):
                 wrong()
+
+    def test_a_move_that_makes_no_sense_moves_nothing(self):
+        deformer = cagewright.Deformer(V, F, CAGE)
+        nowhere = CAGE.vertices.copy()
+        nowhere[5, 1] = np.nan
+        for wrong, words in [(lambda: deformer(nowhere), "row 5 .* not a finite number"),
+                             (lambda: deformer.move(1, [0, np.inf, 0]), "not a finite number"),
+                             (lambda: deformer.move(1.5, [0, 0, 0]), "integers, not float64"),
+                             (lambda: deformer.move(np.ones(len(nowhere), bool), nowhere), "flatnonzero")]:
+            with self.assertRaisesRegex(ValueError, words):
+                wrong()
+        self.assertEqual(deformer.positions.tobytes(), V.tobytes())
+        self.assertEqual(deformer(Thing(vertices=CAGE.vertices, faces=CAGE.faces)).tobytes(), V.tobytes())
 
     def test_views_of_a_deformer_change_with_it(self):
         deformer = cagewright.Deformer(V, F, *CAGE)
@@ -471,7 +547,7 @@ class Others(InAFolder):
         self.assertEqual(with_cage[0, 0].tolist(), [255, 255, 255, 255])
         one_view = cagewright.render(Thing(vertices=V, faces=F), CAGE, size=(80, 60), views=(35, 15), up="z")
         self.assertEqual(one_view.shape, (60, 80, 4))
-        for wrong in ({"views": "inside"}, {"background": "plaid"}, {"up": "x"}, {"size": (0, -5)}):
+        for wrong in ({"views": "inside"}, {"background": "plaid"}, {"up": "x"}, {"size": (0, -5)}, {"size": 100}):
             with self.assertRaises(ValueError):
                 cagewright.render(V, F, **wrong)
 
