@@ -37,10 +37,10 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cagewrightConfigVersion.c
   COMPATIBILITY SameMinorVersion)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/cagewright.pc.in ${PROJECT_BINARY_DIR}/cagewright.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/cagewrightConfig.cmake
-              ${PROJECT_BINARY_DIR}/cagewrightConfigVersion.cmake DESTINATION ${package_dir})
-install(FILES ${PROJECT_BINARY_DIR}/cagewright.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+              ${PROJECT_BINARY_DIR}/cagewrightConfigVersion.cmake DESTINATION ${package_dir} COMPONENT development)
+install(FILES ${PROJECT_BINARY_DIR}/cagewright.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 install(FILES ${PROJECT_SOURCE_DIR}/include/cagewright/cagewright.h
               ${PROJECT_BINARY_DIR}/include/cagewright/version.h
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cagewright)
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cagewright COMPONENT development)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/LICENSES DESTINATION ${CMAKE_INSTALL_DOCDIR})

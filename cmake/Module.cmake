@@ -51,10 +51,10 @@ function(cagewright_add_module)
   endforeach()
   if(CAGEWRIGHT_INSTALL)
     install(TARGETS cagewright_${M_NAME} EXPORT cagewright_${M_NAME}
-      ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-      FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+      ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+      FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
     install(EXPORT cagewright_${M_NAME} NAMESPACE cagewright:: FILE cagewright-${M_NAME}.cmake
-      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/cagewright)
+      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/cagewright COMPONENT development)
   endif()
 endfunction()
 
