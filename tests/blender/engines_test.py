@@ -141,7 +141,9 @@ class Engines(Test):
         out = HOME / "moving.glb"
         try:
             self.run_program("deform", sample, cage, *frames, "-o", out, "--quiet")
-        except AssertionError:
+        except AssertionError as refused:
+            if "is one file, but there are" not in str(refused):
+                raise
             self.skipTest("this program writes no movements")
         self.assertEqual(faults_of(out), [])
         empty()
