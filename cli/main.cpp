@@ -1,7 +1,9 @@
 #include "describe.h"
+#include "interruption.h"
 #include "json.h"
 #include "session.h"
 
+#include "io/atomic_file.h"
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/version.h>
 
@@ -16,6 +18,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <new>
 #include <string_view>
 #include <system_error>
@@ -35,23 +38,7 @@ constexpr const char* exit_codes = R"(Exit codes:
   4    the limit of time or memory is reached
   130  stopped by Ctrl-C or another signal)";
 
-// A signal handler can reach nothing but a global; the handler's thread asks the session to stop.
-StopFlag* interrupt_target = nullptr;
-
-void interrupt(int signal) {
-  if (interrupt_target != nullptr) {
-    interrupt_target->request_stop();
-  }
-  std::signal(signal, SIG_DFL); // a second Ctrl-C ends the program at once
-}
-
-void catch_signals(Session& session) {
-  interrupt_target = &session.stop;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    if (std::signal(signal, interrupt) == SIG_IGN) { // as under nohup
-      std::signal(signal, SIG_IGN);
-    }
-  }
+void ignore_signals() {
   // Whoever reads our output may stop doing so; the files are written nevertheless.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -163,6 +150,24 @@ std::string json_of_command_line(const std::vector<std::string>& words) {
   return {};
 }
 
+/// With --json, the failure that was told last.
+void tell_failure_in_json(const Session& session, int exit_code) {
+  if (session.first_failure) {
+    tell_in_json(session,
+                 json_of_failure(code_of(session, *session.first_failure),
+                                 session.first_failure->message, session.words),
+                 exit_code);
+  }
+}
+
+/// Ends the program in the middle of whatever it is doing. Files that are not complete go.
+[[noreturn]] void end_at_once(const Session& session) {
+  const int exit_code = fail(Error::cancelled());
+  tell_failure_in_json(session, exit_code);
+  abandon_part_files();
+  ::_exit(exit_code);
+}
+
 int run_command_line(Session& session, CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -173,6 +178,10 @@ int run_command_line(Session& session, CLI::App& app, int argc, char** argv) {
     tell_in_json(session, json_of_failure("misuse", e.what(), {}), bad_input);
     return bad_input;
   }
+  // A batch ends when its models have, which it asks to stop.
+  const bool has_others = session.limits.is_for_each;
+  const Interruption interruption(
+      session.stop, has_others ? std::function<void()>() : [&session] { end_at_once(session); });
   const Limits limits = session.limits.is_for_each ? Limits{.seconds = 0} : session.limits;
   const Deadline deadline(
       limits.seconds,
@@ -180,14 +189,11 @@ int run_command_line(Session& session, CLI::App& app, int argc, char** argv) {
         session.out_of_time = true;
         session.stop.request_stop();
       },
-      [] { ::_exit(fail(Error::cancelled())); });
+      [&session] { end_at_once(session); });
   limit_memory(limits.bytes);
   const int exit_code = run(session);
-  if (exit_code != done && session.first_failure) {
-    tell_in_json(session,
-                 json_of_failure(code_of(session, *session.first_failure),
-                                 session.first_failure->message, session.words),
-                 exit_code);
+  if (exit_code != done) {
+    tell_failure_in_json(session, exit_code);
   }
   return exit_code;
 }
@@ -214,6 +220,6 @@ int main(int argc, char** argv) {
   CAGEWRIGHT_COMMANDS(CAGEWRIGHT_ADD)
 #undef CAGEWRIGHT_ADD
   add_describe(app, session);
-  catch_signals(session);
+  ignore_signals();
   return flush_output(run_command_line(session, app, argc, argv));
 }

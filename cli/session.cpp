@@ -1,12 +1,11 @@
 #include "session.h"
 
-#include <cagewright/core/steady_report.h>
-
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <memory>
+#include <mutex>
 
 namespace cagewright::cli {
 namespace {
@@ -31,16 +30,15 @@ Progress Session::progress() const {
   if (quiet || isatty(STDERR_FILENO) == 0) {
     return Progress(stop);
   }
-  return Progress(
-      stop, steady([last = std::make_shared<int>(-1)](double fraction, std::string_view step) {
-        const int percent = static_cast<int>(fraction * 100);
-        if (percent != *last) {
-          *last = percent;
-          std::fprintf(stderr, "\r\033[K%3d %%  %.*s%s", percent, static_cast<int>(step.size()),
-                       step.data(), percent >= 100 ? "\r\033[K" : "");
-          std::fflush(stderr);
-        }
-      }));
+  return Progress(stop, [last = std::make_shared<int>(-1)](double fraction, std::string_view step) {
+    const int percent = static_cast<int>(fraction * 100);
+    if (percent != *last) {
+      *last = percent;
+      std::fprintf(stderr, "\r\033[K%3d %%  %.*s%s", percent, static_cast<int>(step.size()),
+                   step.data(), percent >= 100 ? "\r\033[K" : "");
+      std::fflush(stderr);
+    }
+  });
 }
 
 void Session::say(std::string_view text) const {
@@ -68,7 +66,13 @@ ExitCode exit_code_of(const Error& error) {
 }
 
 int fail(const Error& error) {
+  static std::mutex mutex; // whoever ends the program is another thread
+  const std::lock_guard lock(mutex);
   const Error told = as_told(error);
+  if (session_at_hand != nullptr && session_at_hand->first_failure &&
+      session_at_hand->first_failure->code == ErrorCode::cancelled) {
+    return exit_code_of(error); // that is told once
+  }
   std::fprintf(stderr, "%scagewright: %s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "",
                told.message.c_str());
   if (session_at_hand != nullptr && !session_at_hand->first_failure) {

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <mutex>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -52,6 +54,10 @@ int write_all(int file, std::string_view bytes) {
   return 0;
 }
 
+// Names of files that are being written: for a program that ends in the middle of it.
+std::mutex named_parts_mutex;
+std::set<fs::path> named_parts;
+
 // A folder as open() takes it.
 fs::path folder_of(const fs::path& path) {
   const fs::path folder = path.parent_path();
@@ -64,7 +70,11 @@ fs::path folder_of(const fs::path& path) {
 template <class Make> int with_free_name(const fs::path& target, fs::path& part, Make make) {
   for (int i = 0; i < 10000; ++i) {
     part = target.parent_path() / (".cagewright-" + std::to_string(i) + ".part");
+    const std::lock_guard lock(named_parts_mutex);
     const int made = make(part);
+    if (made >= 0) {
+      named_parts.insert(part);
+    }
     if (made >= 0 || errno != EEXIST) {
       return made;
     }
@@ -99,7 +109,9 @@ PartFile::~PartFile() {
     ::close(file_);
   }
   if (!part_.empty()) {
+    const std::lock_guard lock(named_parts_mutex);
     ::unlink(part_.c_str());
+    named_parts.erase(part_);
   }
 }
 
@@ -248,8 +260,10 @@ Status PartFile::commit() {
   // Some file systems report a full disk only on closing.
   const int closing_error = ::close(std::exchange(file_, -1)) == 0 ? 0 : errno;
   error = error != 0 ? error : closing_error;
-  if (error == 0 && !part_.empty() && ::rename(part_.c_str(), target_.c_str()) != 0) {
-    error = errno;
+  if (error == 0 && !part_.empty()) {
+    const std::lock_guard lock(named_parts_mutex);
+    error = ::rename(part_.c_str(), target_.c_str()) == 0 ? 0 : errno;
+    named_parts.erase(part_);
   }
   if (error != 0) {
     return cannot_write(path_, error); // the destructor removes the part
@@ -288,6 +302,13 @@ Status write_files_atomically(std::span<const NamedBytes> files) {
     }
   }
   return success();
+}
+
+void abandon_part_files() {
+  named_parts_mutex.lock(); // for ever: nothing is to begin, or to get its name, after this
+  for (const fs::path& part : named_parts) {
+    ::unlink(part.c_str());
+  }
 }
 
 Status can_write_file(const fs::path& path) {

@@ -72,6 +72,10 @@ struct NamedBytes {
 /// Errors: cannot_write; nothing is left behind.
 Status write_files_atomically(std::span<const NamedBytes> files);
 
+/// Removes from the disk what there is of files that are not complete, and lets no other one get a
+/// name: for a program that is about to end, whatever its threads are doing.
+void abandon_part_files();
+
 /// Whether such a file can be written, asked before minutes are spent on making it. Errors:
 /// cannot_write.
 Status can_write_file(const std::filesystem::path& path);
