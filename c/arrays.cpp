@@ -349,4 +349,16 @@ PolygonMesh MeshArgument::polygons() const {
   return mesh;
 }
 
+Result<ModelAndCage> ModelAndCage::of(const cw_mesh_view* model, const cw_mesh_view* cage) {
+  Result<MeshArgument> first = MeshArgument::of(model, "the model");
+  if (!first) {
+    return first.error();
+  }
+  Result<MeshArgument> second = MeshArgument::of(cage, "the cage");
+  if (!second) {
+    return second.error();
+  }
+  return ModelAndCage{std::move(*first), std::move(*second)};
+}
+
 } // namespace cagewright::c

@@ -75,4 +75,13 @@ private:
   std::span<const Triangle> triangles_;
 };
 
+/// The two that most functions are about.
+struct ModelAndCage {
+  MeshArgument model;
+  MeshArgument cage;
+
+  /// Errors: those of MeshArgument::of().
+  static Result<ModelAndCage> of(const cw_mesh_view* model, const cw_mesh_view* cage);
+};
+
 } // namespace cagewright::c

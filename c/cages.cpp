@@ -244,19 +244,15 @@ cw_code cw_check(const cw_mesh_view* model, const cw_mesh_view* cage, int flags,
                  const cw_control* control, cw_verdict** out, cw_error** error) {
   *out = nullptr;
   return call(error, control, [&](const Progress& progress) -> Status {
-    const Result<MeshArgument> first = MeshArgument::of(model, "the model");
-    if (!first) {
-      return first.error();
-    }
-    const Result<MeshArgument> second = MeshArgument::of(cage, "the cage");
-    if (!second) {
-      return second.error();
+    const Result<ModelAndCage> meshes = ModelAndCage::of(model, cage);
+    if (!meshes) {
+      return meshes.error();
     }
     const ValidateOptions options{.allow_pieces = (flags & CW_CHECK_PIECES) != 0,
                                   .allow_inner_shells = (flags & CW_CHECK_INNER_SHELLS) != 0,
                                   .weld = true,
                                   .max_listed = max_listed};
-    return judge(*first, second->polygons(), options, progress, out);
+    return judge(meshes->model, meshes->cage.polygons(), options, progress, out);
   });
 }
 

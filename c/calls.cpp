@@ -71,17 +71,8 @@ Progress progress_of(const cw_control& control, const StopFlag& stop) {
   if (control.report == nullptr) {
     return Progress(stop);
   }
-  // Stages that run side by side report as they come: the caller sees one line of fractions that
-  // never falls, from one thread at a time.
-  struct Line {
-    std::mutex mutex;
-    double fraction = 0;
-  };
-  return Progress(stop, [control, stop, line = std::make_shared<Line>()](double fraction,
-                                                                         std::string_view step) {
-    const std::lock_guard lock(line->mutex);
-    line->fraction = std::clamp(fraction, line->fraction, 1.0);
-    if (control.report(control.user, line->fraction, std::string(step).c_str()) != 0) {
+  return Progress(stop, [control, stop](double fraction, std::string_view step) {
+    if (control.report(control.user, fraction, std::string(step).c_str()) != 0) {
       stop.request_stop();
     }
   });

@@ -159,15 +159,11 @@ cw_code cw_deformer_bind(const cw_mesh_view* model, const cw_mesh_view* cage,
                          cw_deformer** out, cw_error** error) {
   *out = nullptr;
   return call(error, control, [&](const Progress& progress) -> Status {
-    const Result<MeshArgument> first = MeshArgument::of(model, "the model");
-    if (!first) {
-      return first.error();
+    const Result<ModelAndCage> meshes = ModelAndCage::of(model, cage);
+    if (!meshes) {
+      return meshes.error();
     }
-    const Result<MeshArgument> second = MeshArgument::of(cage, "the cage");
-    if (!second) {
-      return second.error();
-    }
-    return bind(*first, *second, known_part(options), progress, out);
+    return bind(meshes->model, meshes->cage, known_part(options), progress, out);
   });
 }
 
