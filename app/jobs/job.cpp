@@ -1,7 +1,5 @@
 #include "app/jobs/job.h"
 
-#include <cagewright/core/steady_report.h>
-
 #include <QMetaObject>
 
 #include <algorithm>
@@ -41,18 +39,17 @@ void Job::start(Work work) {
     auto last = std::chrono::steady_clock::time_point();
     const StopFlag flag;
     const std::stop_callback link(stop, [flag] { flag.request_stop(); });
-    const Progress progress(
-        flag, steady([this, last](double fraction, std::string_view step) mutable {
-          const auto now = std::chrono::steady_clock::now();
-          if (now - last < std::chrono::milliseconds(33) && fraction < 1) {
-            return;
-          }
-          last = now;
-          const QString text = QString::fromUtf8(step.data(), static_cast<qsizetype>(step.size()));
-          QMetaObject::invokeMethod(
-              this, [this, fraction, text] { Q_EMIT progressed(fraction, text); },
-              Qt::QueuedConnection);
-        }));
+    const Progress progress(flag, [this, last](double fraction, std::string_view step) mutable {
+      const auto now = std::chrono::steady_clock::now();
+      if (now - last < std::chrono::milliseconds(33) && fraction < 1) {
+        return;
+      }
+      last = now;
+      const QString text = QString::fromUtf8(step.data(), static_cast<qsizetype>(step.size()));
+      QMetaObject::invokeMethod(
+          this, [this, fraction, text] { Q_EMIT progressed(fraction, text); },
+          Qt::QueuedConnection);
+    });
     Result<Apply> result = run(work, progress);
     QMetaObject::invokeMethod(
         this,

@@ -62,7 +62,8 @@ double canonical_grid(double clearance) {
   return grid;
 }
 
-CanonicalModel canonical_model(TriangleView model, const UnitFrame& frame, double grid) {
+CanonicalModel canonical_model(TriangleView model, const UnitFrame& frame, double grid,
+                               const Progress& progress) {
   CanonicalModel result;
   result.frame = frame;
   std::vector<Vec3> rounded = to_unit(frame, model.positions);
@@ -75,6 +76,9 @@ CanonicalModel canonical_model(TriangleView model, const UnitFrame& frame, doubl
   std::iota(result.vertices.begin(), result.vertices.end(), Index{0});
   std::stable_sort(result.vertices.begin(), result.vertices.end(),
                    [&](Index a, Index b) { return key_of(rounded[a]) < key_of(rounded[b]); });
+  if (progress.cancelled()) {
+    return result;
+  }
   std::vector<Index> number(rounded.size());
   std::vector<Index> place(rounded.size()); // the same for all vertices at one place
   for (std::size_t i = 0; i < result.vertices.size(); ++i) {
@@ -87,6 +91,9 @@ CanonicalModel canonical_model(TriangleView model, const UnitFrame& frame, doubl
   for (const Triangle& t : model.triangles) {
     result.mesh.triangles.push_back(
         turned_to_first({number[t[0]], number[t[1]], number[t[2]]}, place));
+  }
+  if (progress.cancelled()) {
+    return result;
   }
   const auto places = [&](const Triangle& t) {
     return std::array{place[t[0]], place[t[1]], place[t[2]]};

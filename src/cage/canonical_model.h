@@ -5,6 +5,7 @@
 
 #include "cage/unit_frame.h"
 #include <cagewright/cage/generated_cage.h>
+#include <cagewright/core/progress.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
 #include <vector>
@@ -26,7 +27,9 @@ struct CanonicalModel {
 double canonical_grid(double clearance);
 
 /// \param frame  unit_frame() of the model
-CanonicalModel canonical_model(TriangleView model, const UnitFrame& frame, double grid);
+/// \returns something else if it is to stop
+CanonicalModel canonical_model(TriangleView model, const UnitFrame& frame, double grid,
+                               const Progress& progress = {});
 
 /// A cage of the canonical model as one of the model that it was made from. Vertices that are each
 /// other's mirror images are paired anew, exactly across one of the world's axes: see MirrorFrame.

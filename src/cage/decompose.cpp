@@ -56,7 +56,7 @@ Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& o
 
   made.vertex_box = pca_box(positions);
   Result<VoxelGrid> first =
-      voxelize(unit, made.vertex_box, voxels_in(made.vertex_box), progress.part(0, 0.4));
+      voxelize(unit, made.vertex_box, voxels_in(made.vertex_box), progress.part(0, 0.15));
   if (!first) {
     return first.error();
   }
@@ -64,7 +64,7 @@ Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& o
   watch.lap("first voxels");
 
   Result<VoxelGrid> second =
-      voxelize(unit, made.point_box, voxels_in(made.point_box), progress.part(0.4, 0.8));
+      voxelize(unit, made.point_box, voxels_in(made.point_box), progress.part(0.15, 0.3));
   if (!second) {
     return second.error();
   }
@@ -75,7 +75,7 @@ Result<BoxDecomposition> decompose(TriangleView model, const DecomposeOptions& o
   watch.lap("voxels");
 
   Result<BoxTree> tree =
-      build_box_tree(in_grid_coordinates(made.grid), options.slicing, progress.part(0.8, 1));
+      build_box_tree(in_grid_coordinates(made.grid), options.slicing, progress.part(0.3, 1));
   if (!tree) {
     return tree.error();
   }

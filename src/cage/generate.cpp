@@ -32,8 +32,6 @@
 namespace cagewright {
 namespace {
 
-constexpr double made_by = 0.97; // of the time; the figures come after
-
 Status check(TriangleView model, const GenerateOptions& options) {
   if (const Status in_range = check_ranges(options); !in_range) {
     return in_range;
@@ -151,7 +149,10 @@ Result<GeneratedCage> improved_cage(TriangleView model, const GenerateOptions& o
     return surfaces(model, options, Vec3::Zero(), progress);
   }
   constexpr double usual = 0.98; // of the time
-  const CanonicalModel canonical = canonical_model(model, *frame, grid);
+  const CanonicalModel canonical = canonical_model(model, *frame, grid, progress);
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
   GenerateOptions own = options;
   own.clearance += grid;
   own.max_gap -= options.max_gap > 0 ? grid : 0;
@@ -246,6 +247,8 @@ Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& option
   if (const Status good = check(model, options); !good) {
     return good.error();
   }
+  // Of the time; the figures come after. Boxes are made soon.
+  const double made_by = options.start == nullptr && options.method == Method::boxes ? 0.9 : 0.97;
   const Progress making = progress.part(0, made_by);
   Result<GeneratedCage> made = options.start != nullptr ? own_cage(model, options, making)
                                : options.method == Method::boxes
@@ -258,7 +261,10 @@ Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& option
     made->boxes = boxes_of(*made->box_tree);
   }
   finish_remarks(*made);
-  made->figures = measure_cage(made->faces, model);
+  made->figures = measure_cage(made->faces, model, {}, progress.part(made_by, 1));
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
   progress(1, "done");
   return made;
 }

@@ -9,12 +9,14 @@
 namespace cagewright {
 
 Ground::Ground(TriangleView model, const GenerateOptions& options,
-               const std::optional<MirrorPlane>& plane)
-    : model_(model), options_(options), diagonal_(cagewright::diagonal(model.positions)) {
+               const std::optional<MirrorPlane>& plane, EngineRuns& runs)
+    : model_(model), options_(options), runs_(runs),
+      diagonal_(cagewright::diagonal(model.positions)) {
   if (!plane) {
     return;
   }
   frame_.emplace(*plane, bounding_box(model.positions));
+  here_ = in_frame(model, *frame_);
   half_ = half_model(model, *frame_);
   if (!options.density.empty()) {
     for (const Index v : half_.vertices) {
@@ -23,10 +25,33 @@ Ground::Ground(TriangleView model, const GenerateOptions& options,
   }
 }
 
-TriangleMesh Ground::model_here() const {
-  return is_half() ? in_frame(model_, *frame_)
-                   : TriangleMesh{{model_.positions.begin(), model_.positions.end()},
-                                  {model_.triangles.begin(), model_.triangles.end()}};
+const ModelSurface& Ground::surface() const {
+  if (!surface_) {
+    surface_ = std::make_unique<const ModelSurface>(enclosed(), diagonal_);
+  }
+  return *surface_;
+}
+
+const ModelSurface& Ground::surface_here() const {
+  if (!is_half()) {
+    return surface();
+  }
+  if (!surface_here_) {
+    surface_here_ = std::make_unique<const ModelSurface>(here_, diagonal_);
+  }
+  return *surface_here_;
+}
+
+Result<Improved> Ground::improved(TriangleView start, const ImproveOptions& budget,
+                                  const Progress& progress) const {
+  runs_.use_one();
+  return improve(start, surface(), budget, progress);
+}
+
+Result<Improved> Ground::drafted(TriangleView start, const ImproveOptions& budget,
+                                 const Progress& progress) const {
+  runs_.use_one();
+  return improve(start, surface_here(), budget, progress);
 }
 
 ImproveOptions Ground::budget(double clearance) const {

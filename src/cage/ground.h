@@ -3,8 +3,10 @@
 /// done there is the same for both. Internal to this module.
 #pragma once
 
+#include "cage/engine_runs.h"
 #include "cage/start.h"
 #include "improve/cage_extent.h"
+#include "improve/guard.h"
 #include "improve/improve.h"
 #include "spatial/bvh.h"
 #include "symmetry/half.h"
@@ -26,9 +28,10 @@ namespace cagewright {
 /// a half the coordinates are those in which the mirror plane is x = 0.
 class Ground {
 public:
-  /// The whole model, or with a plane one side of it. The views must live as long as the ground.
+  /// The whole model, or with a plane one side of it. All that is referred to must live as long as
+  /// the ground.
   Ground(TriangleView model, const GenerateOptions& options,
-         const std::optional<MirrorPlane>& plane);
+         const std::optional<MirrorPlane>& plane, EngineRuns& runs);
   Ground(const Ground&) = delete;
   Ground& operator=(const Ground&) = delete;
   virtual ~Ground() = default;
@@ -41,13 +44,23 @@ public:
 
   /// The model in its own coordinates, and in those of the ground.
   [[nodiscard]] TriangleView model() const { return model_; }
-  [[nodiscard]] TriangleMesh model_here() const;
+  [[nodiscard]] TriangleView model_here() const { return is_half() ? TriangleView(here_) : model_; }
   /// What is to be enclosed here: the model, or what half a cage must enclose.
   [[nodiscard]] TriangleView enclosed() const {
     return is_half() ? TriangleView(half_.mesh) : model_;
   }
+  /// Of what is to be enclosed.
+  [[nodiscard]] const ModelSurface& surface() const;
   /// Of the model: what all lengths are fractions of.
   [[nodiscard]] double diagonal() const { return diagonal_; }
+
+  /// Runs the engine, and counts that.
+  [[nodiscard]] Result<Improved> improved(TriangleView start, const ImproveOptions& budget,
+                                          const Progress& progress) const;
+  /// The same for a draft: round all of the model here, to see what a start is worth.
+  [[nodiscard]] Result<Improved> drafted(TriangleView start, const ImproveOptions& budget,
+                                         const Progress& progress) const;
+  [[nodiscard]] const EngineRuns& runs() const { return runs_; }
 
   /// What is asked of the improvement here. The density lives as long as the ground.
   [[nodiscard]] ImproveOptions budget(double clearance) const;
@@ -78,14 +91,20 @@ public:
 
 private:
   const TriangleBvh& hierarchy() const;
+  const ModelSurface& surface_here() const;
 
   TriangleView model_;
   const GenerateOptions& options_;
+  EngineRuns& runs_;
   double diagonal_ = 0;
   std::optional<MirrorFrame> frame_;
+  TriangleMesh here_; // the model in the frame, if there is one
   HalfModel half_;
   std::vector<double> density_of_half_;
-  mutable std::unique_ptr<const TriangleBvh> hierarchy_; // made when it is first asked for
+  // Made when they are first asked for.
+  mutable std::unique_ptr<const TriangleBvh> hierarchy_;
+  mutable std::unique_ptr<const ModelSurface> surface_;
+  mutable std::unique_ptr<const ModelSurface> surface_here_;
 };
 
 } // namespace cagewright

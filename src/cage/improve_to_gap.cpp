@@ -31,8 +31,8 @@ std::string percent(double fraction) {
 class Search {
 public:
   Search(const Ground& ground, TriangleView start, const ImproveOptions& options, double max_gap)
-      : ground_(ground), start_(start), model_(ground.enclosed()), options_(options),
-        max_gap_(max_gap), diagonal_(ground.diagonal()) {
+      : ground_(ground), start_(start), options_(options), max_gap_(max_gap),
+        diagonal_(ground.diagonal()) {
     limit_ = std::min(most, vertices_of(start));
     if (options.vertices > 0) {
       limit_ = std::min(limit_, options.vertices);
@@ -44,7 +44,7 @@ public:
   }
 
   Result<Triangles> run(const Progress& progress) {
-    constexpr double direct = 0.5; // of the progress
+    constexpr double direct = 0.8; // of the progress: seldom is there more to do
     if (const Status made = try_directly(progress.part(0, direct)); !made) {
       return made.error();
     }
@@ -52,7 +52,7 @@ public:
       return std::move(*fine_);
     }
     int vertices = std::min(first_try, limit_);
-    for (int k = 0; k < runs && vertices > 0; ++k) {
+    for (int k = 0; k < runs && vertices > 0 && may_try(k); ++k) {
       const Progress part =
           progress.part(direct + (1 - direct) * k / runs, direct + (1 - direct) * (k + 1.0) / runs);
       if (const Status made = make(vertices, part); !made) {
@@ -76,6 +76,8 @@ public:
   }
 
 private:
+  [[nodiscard]] bool may_try(int before) const { return before == 0 || ground_.runs().are_left(); }
+
   [[nodiscard]] int vertices_of(TriangleView cage) const {
     return static_cast<int>(ground_.vertices_of(cage.positions));
   }
@@ -91,11 +93,12 @@ private:
     options.vertices = limit_;
     options.faces = 0;
     double over = 1.02;
-    for (int k = 0; k < direct_runs; ++k) {
+    double done = 0; // often once is enough
+    for (int k = 0; k < direct_runs && may_try(k); ++k) {
       options.max_gap = std::max(max_gap_ / over, (max_gap_ + options_.clearance) / 2);
-      Result<Improved> improved =
-          improve(start_, model_, options,
-                  progress.part(static_cast<double>(k) / direct_runs, (k + 1.0) / direct_runs));
+      const double then = k == 0 ? 0.7 : (done + 1) / 2;
+      Result<Improved> improved = ground_.improved(start_, options, progress.part(done, then));
+      done = then;
       if (!improved) {
         return improved.error();
       }
@@ -124,7 +127,7 @@ private:
     const TriangleView start = fine_ ? TriangleView(fine_->improved.cage) : start_;
     options.parts = fine_ ? std::span<const Index>(fine_->improved.parts) : options.parts;
     options.rounds = fine_ ? std::min(options.rounds, 1) : options.rounds;
-    Result<Improved> improved = improve(start, model_, options, progress);
+    Result<Improved> improved = ground_.improved(start, options, progress);
     if (!improved) {
       return improved.error();
     }
@@ -184,7 +187,6 @@ private:
 
   const Ground& ground_;
   TriangleView start_;
-  TriangleView model_;
   const ImproveOptions& options_;
   double max_gap_;
   double diagonal_;

@@ -11,14 +11,16 @@
 
 namespace cagewright {
 
-/// What a cage costs: less is better. Whether it is beyond the budget, and then its volume and what
-/// there is between it and the model, or what stands for them, times what else makes it dearer.
+/// What a cage costs: less is better, and the first that differs decides.
 struct Cost {
-  bool is_over = false;
+  bool is_over = false; ///< beyond the budget, or the gap
+  /// What there is between it and the model, times what else makes it dearer; or what stands for
+  /// that where cages of one kind are compared: how far or how large one is, or how ill shaped.
   double value = 0;
+  double rest = 0; ///< of two that are alike
 
   auto operator<=>(const Cost&) const = default;
-  [[nodiscard]] Cost times(double factor) const { return {is_over, factor * value}; }
+  [[nodiscard]] Cost times(double factor) const { return {is_over, factor * value, rest}; }
 };
 
 /// What webs, and handles that are not the model's own, make a cage dearer by.
@@ -28,8 +30,7 @@ struct Cost {
 /// \param known    handles that the model has itself
 double dearer_by(double webbing, int genus, int known);
 
-/// In the order of weight: what was asked for, enough quads, no needles, few thin faces. More than
-/// enough of one does not make up for another; of two that are alike the earlier stays.
+/// Whether a cage is as it should be. More than enough of one thing does not make up for another.
 struct Merit {
   bool reached = false; ///< the budget, and the gap if one was asked for
   double quads = 0;     ///< share of the faces; of triangles where none are asked for: enough
@@ -44,14 +45,13 @@ struct Merit {
   /// Of a cage of triangles.
   Merit(bool has_reached, TriangleView cage);
 
-  auto operator<=>(const Merit&) const = default;
+  /// Of triangles that are as tight as can be with their shape: no needles, then few thin faces.
+  [[nodiscard]] Cost cost() const { return {!reached, shape_limits::needle - least, -few_thin}; }
 
-  /// Whether enough faces are quads, and round. There may be a needle.
-  [[nodiscard]] bool is_mostly_good() const {
-    return quads >= shape_limits::enough_quads && few_thin >= -shape_limits::few_thin;
-  }
+  /// Whether enough faces are quads, and round.
   [[nodiscard]] bool is_well_shaped() const {
-    return is_mostly_good() && least >= shape_limits::needle;
+    return quads >= shape_limits::enough_quads && few_thin >= -shape_limits::few_thin &&
+           least >= shape_limits::needle;
   }
 };
 

@@ -36,7 +36,7 @@ Mirroring choose_mirroring(TriangleView model, const GenerateOptions& options, c
     break;
   }
   const int axis = options.symmetry == Symmetry::x ? 0 : options.symmetry == Symmetry::y ? 1 : 2;
-  if (const auto plane = best_mirror_plane(model, axis, origin)) {
+  if (const auto plane = best_mirror_plane(model, axis, origin, progress)) {
     return {plane, true, ""};
   }
   return {std::nullopt, true, "the model has no surface to mirror"};

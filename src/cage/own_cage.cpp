@@ -204,8 +204,8 @@ Result<GeneratedCage> own_cage(TriangleView model, const GenerateOptions& option
     result.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
     return result;
   };
-  const TriangleMesh all = with_strays(in_unit(model));
-  const ModelSurface surface(all);
+  const ModelSurface surface(in_unit(model));
+  const TriangleMesh& all = surface.mesh;
   PolygonMesh work = cut_to_quads(prepared->cage);
   work.positions = to_unit(*frame, work.positions);
   QuadCage cage(work);

@@ -1,5 +1,6 @@
 #include "cage/part_maker.h"
 
+#include "cage/best_of.h"
 #include "cage/budget.h"
 #include "cage/part_options.h"
 #include "cage/quad_cuts.h"
@@ -101,17 +102,18 @@ Result<GeneratedCage> PartMaker::make_two(TriangleView part, const GenerateOptio
                                           const Progress& progress) const {
   const int attempts = options.max_gap > 0 ? 4 : 1;
   double max_gap = options.max_gap;
-  Result<GeneratedCage> best = Error{ErrorCode::no_valid_cage, ""};
+  const auto cost_of = [](const GeneratedCage& made) {
+    return Cost{false, made.gap.value_or(0), 0};
+  };
+  BestOf<GeneratedCage, decltype(cost_of)> tries(cost_of);
   for (int k = 0; k < attempts; ++k) {
     GenerateOptions own = options;
     own.max_gap = max_gap;
     Result<GeneratedCage> made = make_two_once(
         part, own, progress.part(static_cast<double>(k) / attempts, (k + 1.0) / attempts));
-    if (!made) {
-      return best ? std::move(best) : std::move(made);
-    }
-    if (!made->gap) {
-      return made;
+    if (!made || !made->gap) {
+      tries.add(std::move(made));
+      break;
     }
     const double gap = *made->gap;
     const bool is_near = gap <= options.max_gap;
@@ -120,9 +122,7 @@ Result<GeneratedCage> PartMaker::make_two(TriangleView part, const GenerateOptio
       add(*made, {Reason::gap_not_kept, "the model is farther than that from its own mirror image",
                   true, std::nullopt});
     }
-    if (!best || gap < *best->gap) {
-      best = std::move(made);
-    }
+    tries.add(std::move(made));
     const double off = gap - max_gap; // what the image costs, about
     if (is_near || !has_side || off + options.clearance >= options.max_gap) {
       break;
@@ -130,7 +130,7 @@ Result<GeneratedCage> PartMaker::make_two(TriangleView part, const GenerateOptio
     constexpr double less = 0.98;
     max_gap = std::max(1.05 * options.clearance, less * (options.max_gap - off));
   }
-  return best;
+  return tries.taken();
 }
 
 Result<GeneratedCage> PartMaker::make_two_once(TriangleView part, const GenerateOptions& options,

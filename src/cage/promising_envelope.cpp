@@ -21,8 +21,9 @@ struct Try {
 /// Tells what an envelope is worth by what becomes of it.
 class Drafts {
 public:
-  Drafts(const Ground& ground, const GenerateOptions& options, const EnvelopeOptions& wanted)
-      : ground_(ground), model_(ground.model_here()), wanted_(wanted), between_(model_),
+  Drafts(const Ground& ground, const GenerateOptions& options, const EnvelopeOptions& wanted,
+         const Progress& progress)
+      : ground_(ground), wanted_(wanted), between_(ground.model_here(), progress),
         draft_(ground.budget(options.clearance)) {
     draft_.draft = true;
     draft_.density = {}; // of other vertices, where the model is a half
@@ -33,13 +34,13 @@ public:
     options.resolution = setting.resolution;
     options.closing = setting.closing;
     constexpr double enclosed = 0.3; // of the time
-    Result<Envelope> start = envelope(model_, options, progress.part(0, enclosed));
+    Result<Envelope> start = envelope(ground_.model_here(), options, progress.part(0, enclosed));
     return start ? judged(setting, std::move(*start), progress.part(enclosed, 1)) : start.error();
   }
 
   [[nodiscard]] Result<Try> judged(const EnvelopeSetting& setting, Envelope start,
                                    const Progress& progress) const {
-    const Result<Improved> draft = improve(start.mesh, model_, draft_, progress);
+    const Result<Improved> draft = ground_.drafted(start.mesh, draft_, progress);
     if (!draft) {
       return draft.error();
     }
@@ -51,7 +52,6 @@ public:
 
 private:
   const Ground& ground_;
-  TriangleMesh model_;
   EnvelopeOptions wanted_;
   SpaceBetween between_;
   ImproveOptions draft_;
@@ -79,7 +79,7 @@ std::vector<EnvelopeSetting> rivals_of(const Envelope& first, int vertices) {
 Result<PromisingEnvelope> promising_envelope(const Ground& ground, const GenerateOptions& options,
                                              const EnvelopeOptions& wanted, Envelope first,
                                              const Progress& progress) {
-  const Drafts drafts(ground, options, wanted);
+  const Drafts drafts(ground, options, wanted, progress);
   const std::vector<EnvelopeSetting> rivals = rivals_of(first, wanted.vertices);
   const auto share = [&](std::size_t k) {
     const auto count = static_cast<double>(rivals.size() + 1);
@@ -92,7 +92,7 @@ Result<PromisingEnvelope> promising_envelope(const Ground& ground, const Generat
   }
   std::vector<Try> tries;
   tries.push_back(std::move(*ruled));
-  for (std::size_t k = 0; k < rivals.size(); ++k) {
+  for (std::size_t k = 0; k < rivals.size() && ground.runs().are_left(); ++k) {
     Result<Try> made = drafts.made(rivals[k], share(k + 1));
     if (made) {
       tries.push_back(std::move(*made));

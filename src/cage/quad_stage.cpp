@@ -23,10 +23,12 @@ constexpr double gap_width = 0.002;     // of the greatest gap: how well it is b
 /// Counts the cages of triangles that may still be made.
 class Runs {
 public:
-  [[nodiscard]] bool are_left() const { return left_ > 0; }
+  explicit Runs(const EngineRuns& of_engine) : of_engine_(of_engine) {}
+  [[nodiscard]] bool are_left() const { return left_ > 0 && of_engine_.are_left(); }
   void use_one() { --left_; }
 
 private:
+  const EngineRuns& of_engine_;
   int left_ = most_runs;
 };
 
@@ -51,7 +53,7 @@ Result<QuadStage> quads_of_blocks(const QuadTask& task, const QuadOptions& quads
   options.vertices = vertex_limit(task.options);
   options.faces = task.options.faces;
   options.half = task.ground.is_half();
-  Result<Quadrangulated> made = make_grid_quads(task.ground.enclosed(), options, progress);
+  Result<Quadrangulated> made = make_grid_quads(task.ground.surface(), options, progress);
   if (!made) {
     return made.error();
   }
@@ -81,12 +83,12 @@ double volume_of(const PolygonMesh& cage, CageExtent extent) {
 /// webs and ill shaped faces add.
 class Judge {
 public:
-  Judge(const QuadTask& task, const QuadOptions& quads)
-      : ground_(task.ground), quads_(quads), all_(with_strays(ground_.enclosed())),
-        surface_(all_, ground_.diagonal()), between_(ground_.with_image(all_)) {}
+  Judge(const QuadTask& task, const QuadOptions& quads, const Progress& progress)
+      : ground_(task.ground), quads_(quads),
+        between_(ground_.with_image(ground_.surface().mesh), progress) {}
 
   [[nodiscard]] double looseness_of(const QuadStage& stage) const {
-    return looseness(stage.made.cage, surface_, all_, quads_);
+    return looseness(stage.made.cage, ground_.surface(), quads_);
   }
 
   [[nodiscard]] Cost cost_of(const QuadStage& stage) const {
@@ -106,8 +108,6 @@ public:
 private:
   const Ground& ground_;
   QuadOptions quads_;
-  TriangleMesh all_;
-  ModelSurface surface_;
   SpaceBetween between_;
 };
 
@@ -128,7 +128,7 @@ Result<Triangles> make_triangles(const QuadTask& task, int faces, double max_gap
   if (max_gap > 0) {
     return improve_to_gap(task.ground, task.start.surface, budget, max_gap, progress);
   }
-  Result<Improved> made = improve(task.start.surface, task.ground.enclosed(), budget, progress);
+  Result<Improved> made = task.ground.improved(task.start.surface, budget, progress);
   return made ? Result<Triangles>(Triangles{std::move(*made), std::nullopt, std::nullopt})
               : made.error();
 }
@@ -156,7 +156,7 @@ Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
     own.parts = start->improved.parts;
     own.bands = rings.bands;
     Result<Quadrangulated> made =
-        make_quads(start->improved.cage, task.ground.enclosed(), own, part.part(triangles_made, 1));
+        make_quads(start->improved.cage, task.ground.surface(), own, part.part(triangles_made, 1));
     if (!made) {
       return made.error();
     }
@@ -273,8 +273,8 @@ Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& pro
   quads.shape = budget.shape;
   quads.density = budget.density;
   quads.diagonal = task.ground.diagonal();
-  const Judge judge(task, quads);
-  Runs runs;
+  const Judge judge(task, quads, progress);
+  Runs runs(task.ground.runs());
   constexpr double usual = 0.9; // of the time: hardly ever is there another try
   Result<QuadStage> made = best_quads(task, quads, judge, runs, progress.part(0, usual));
   if (!made || !made->report.reached || task.options.max_gap > 0 || merit(*made).is_well_shaped() ||

@@ -28,6 +28,12 @@ StartTry first_start(const GenerateOptions& options) {
   return {options.method, {options.envelope_resolution, options.closing}, 0};
 }
 
+bool is_open(const GenerateOptions& options, const StartTry& how) {
+  return how.method == Method::envelope && !options.quads && how.envelope.resolution == 0 &&
+         how.envelope.closing == 0 && how.envelope_vertices == 0 && options.max_gap == 0 &&
+         vertices_allowed(options) > 0;
+}
+
 // If the envelope has more handles than the budget can go round, though it seemed enough for them,
 // more of them are filled, and all if need be: a knot has but one, and it takes many vertices to go
 // along it. Where a gap is asked for handles are not filled for vertices' sake.
@@ -53,7 +59,9 @@ Result<Start> make_start(const Ground& ground, const GenerateOptions& options, c
     return start;
   }
   const std::string why_not = start.error().message;
-  start = start_from_envelope(ground, options, how, progress.part(usual, 1));
+  StartTry envelope = how;
+  envelope.method = Method::envelope;
+  start = start_from_envelope(ground, options, envelope, progress.part(usual, 1));
   if (start) {
     start->why_not_boxes = why_not;
   }

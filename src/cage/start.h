@@ -50,6 +50,10 @@ struct Start {
 /// The start that is tried first for a closed surface with these options.
 StartTry first_start(const GenerateOptions& options);
 
+/// Whether an envelope is to be chosen among several. Which start makes good quads drafts of
+/// triangles do not tell.
+bool is_open(const GenerateOptions& options, const StartTry& how);
+
 /// Those that are tried if it did not lead to a cage within the budget: each fills more handles
 /// than the one before, and is of use for nothing else.
 std::vector<StartTry> starts_of_fewer_handles(const GenerateOptions& options);

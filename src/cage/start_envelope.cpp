@@ -7,17 +7,6 @@
 #include <utility>
 
 namespace cagewright {
-namespace {
-
-/// Whether anything is left to be chosen. Which start makes good quads a draft of triangles does
-/// not tell.
-bool is_open(const GenerateOptions& options, const StartTry& how) {
-  return !options.quads && how.envelope.resolution == 0 && how.envelope.closing == 0 &&
-         how.envelope_vertices == 0 && options.max_gap == 0 && vertices_allowed(options) > 0;
-}
-
-} // namespace
-
 Result<Start> start_from_envelope(const Ground& ground, const GenerateOptions& options,
                                   const StartTry& how, const Progress& progress) {
   EnvelopeOptions wanted;

@@ -1,9 +1,9 @@
 #include "cage/surface.h"
 
+#include "cage/best_of.h"
 #include "cage/budget.h"
 #include "cage/ground.h"
 #include "cage/limb_rings.h"
-#include "cage/merit.h"
 #include "cage/not_valid.h"
 #include "cage/quad_stage.h"
 #include "cage/stage_time.h"
@@ -23,7 +23,9 @@ namespace {
 
 // Shares of the time that one surface takes.
 constexpr double started = 0.1;
-constexpr double improved = 0.95;
+constexpr double chosen = 0.25; // if the start is the best of several
+constexpr double improved = 0.97;
+constexpr double rivalled = 0.6;     // until then, if there is a rival
 constexpr double limbs_found = 0.05; // of the improvement
 
 /// A checked cage, and what is known of its start alone.
@@ -95,14 +97,17 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
                         const Progress& progress) {
   Surface surface;
   GeneratedCage& cage = surface.cage;
+  const double begun = is_open(options, how) ? chosen : started;
   Stopwatch watch(cage.times);
-  Result<Start> start = make_start(ground, options, how, progress.part(0, started));
+  Result<Start> start = make_start(ground, options, how, progress.part(0, begun));
   if (!start) {
     return start.error();
   }
   watch.lap(start->method == Method::envelope ? "envelope" : "boxes");
 
-  const Progress improving = progress.part(started, improved);
+  const double end = start->rival ? rivalled : 1;
+  const double checking = end - (1 - improved);
+  const Progress improving = progress.part(begun, checking);
   Result<Made> made = options.quads ? quads_on(ground, *start, options, watch, improving)
                                     : triangles_on(ground, *start, options, improving);
   if (!made) {
@@ -111,8 +116,8 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
   watch.lap("improve");
 
   Ground::WholeCage whole = ground.whole(made->faces);
-  const Result<ValidityReport> validity =
-      validate_cage(whole.faces, ground.model(), {.first_only = true}, progress.part(improved, 1));
+  const Result<ValidityReport> validity = validate_cage(
+      whole.faces, ground.model(), {.first_only = true}, progress.part(checking, end));
   if (!validity) {
     return validity.error();
   }
@@ -149,76 +154,97 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
   return surface;
 }
 
-/// By halves if there is a plane; on the whole model if there is none, or that fails and need not
-/// be.
-Result<Surface> make_from(TriangleView model, const GenerateOptions& options,
-                          const Mirroring& mirroring, const StartTry& how,
-                          const Progress& progress) {
-  std::string why_not = mirroring.why_not;
-  constexpr double usual = 0.9; // of the time: halves hardly ever fail
-  if (mirroring.plane) {
-    const Ground half(model, options, mirroring.plane);
-    Result<Surface> made =
-        make_on(half, options, how, progress.part(0, mirroring.is_insisted_on ? 1 : usual));
-    if (made || mirroring.is_insisted_on || made.error().code == ErrorCode::cancelled) {
-      return made;
-    }
-    why_not = made.error().message;
-  }
-  const Ground whole(model, options, std::nullopt);
-  Result<Surface> made =
-      make_on(whole, options, how, progress.part(mirroring.plane ? usual : 0, 1));
-  if (made && !why_not.empty()) {
-    add(made->cage, {Reason::not_mirrored, why_not, mirroring.is_insisted_on, {}});
-  }
-  return made;
-}
-
 /// Makes one surface after another, and keeps the best.
 class Tries {
 public:
-  Tries(TriangleView model, const GenerateOptions& options) : model_(model), options_(options) {}
+  Tries(TriangleView model, const GenerateOptions& options, const Mirroring& mirroring)
+      : model_(model), options_(options), mirroring_(mirroring), best_of_(CostOf{*this}) {}
+  Tries(const Tries&) = delete;
+  Tries& operator=(const Tries&) = delete;
 
-  /// A try that fails is no worse than none, unless it is the first.
-  Status make(const Mirroring& mirroring, const StartTry& how, const Progress& progress) {
-    Result<Surface> made = make_from(model_, options_, mirroring, how, progress);
-    if (!made) {
-      return best_ && made.error().code != ErrorCode::cancelled ? success() : made.error();
+  /// From a start, by halves if there is a plane; on the whole model if there is none, or that
+  /// fails and need not be.
+  bool make(const StartTry& how, const Progress& progress) {
+    std::string why_not = mirroring_.why_not;
+    constexpr double usual = 0.9; // of the time: halves hardly ever fail
+    if (mirroring_.plane) {
+      Result<Surface> made =
+          make_on(half(), options_, how, progress.part(0, mirroring_.is_insisted_on ? 1 : usual));
+      if (made || mirroring_.is_insisted_on || made.error().code == ErrorCode::cancelled) {
+        return add(std::move(made));
+      }
+      why_not = made.error().message;
     }
-    times_.insert(times_.end(), made->cage.times.begin(), made->cage.times.end());
-    if (!best_ || is_better(*made)) {
-      best_ = std::move(*made);
-    }
-    return success();
+    return make_whole(how, why_not, progress.part(mirroring_.plane ? usual : 0, 1));
   }
 
-  [[nodiscard]] const Surface& best() const { return *best_; }
-  [[nodiscard]] bool is_within_budget() const { return cagewright::is_within_budget(best_->cage); }
+  /// On the whole model.
+  /// \param why_not  the cage is not mirrored; empty: that was not asked for
+  bool make_whole(const StartTry& how, const std::string& why_not, const Progress& progress) {
+    Result<Surface> made = make_on(whole(), options_, how, progress);
+    if (made && !why_not.empty()) {
+      cagewright::add(made->cage, {Reason::not_mirrored, why_not, mirroring_.is_insisted_on, {}});
+    }
+    return add(std::move(made));
+  }
 
-  [[nodiscard]] GeneratedCage taken() {
-    best_->cage.times = std::move(times_);
-    return std::move(best_->cage);
+  /// On the same ground as the best, as it is not mirrored for the same reason.
+  bool make_beside_best(const StartTry& how, const Progress& progress) {
+    if (best().cage.mirror) {
+      return add(make_on(half(), options_, how, progress));
+    }
+    const Remark* why_not = find(best().cage, Reason::not_mirrored);
+    return make_whole(how, why_not == nullptr ? std::string() : why_not->message, progress);
+  }
+
+  [[nodiscard]] const Surface& best() const { return best_of_.best(); }
+  [[nodiscard]] bool may_go_on() const { return runs_.are_left(); }
+
+  [[nodiscard]] Result<GeneratedCage> taken() {
+    Result<Surface> surface = best_of_.taken();
+    if (!surface) {
+      return surface.error();
+    }
+    surface->cage.times = std::move(times_);
+    return std::move(surface->cage);
   }
 
 private:
+  struct CostOf {
+    const Tries& tries;
+    Cost operator()(const Surface& made) const { return tries.cost_of(made); }
+  };
+
   /// Beyond the budget the smallest is the best.
-  [[nodiscard]] bool is_better(const Surface& other) const {
-    const bool is_within = cagewright::is_within_budget(other.cage);
-    if (is_within != is_within_budget()) {
-      return is_within;
+  [[nodiscard]] Cost cost_of(const Surface& made) const {
+    if (!is_within_budget(made.cage)) {
+      return {true, static_cast<double>(made.cage.faces.positions.size()), 0};
     }
-    return is_within ? cost_of(other) < cost_of(*best_)
-                     : other.cage.faces.positions.size() < best_->cage.faces.positions.size();
+    const double webbing = SpaceBetween(model_).share_inside(made.cage.triangles);
+    return {false, made.cage.objective * dearer_by(webbing, made.cage.genus, made.known), 0};
   }
 
-  [[nodiscard]] double cost_of(const Surface& made) const {
-    const double webbing = SpaceBetween(model_).share_inside(made.cage.triangles);
-    return made.cage.objective * dearer_by(webbing, made.cage.genus, made.known);
+  bool add(Result<Surface> made) {
+    if (made) {
+      times_.insert(times_.end(), made->cage.times.begin(), made->cage.times.end());
+    }
+    return best_of_.add(std::move(made));
+  }
+
+  const Ground& half() {
+    return half_ ? *half_ : half_.emplace(model_, options_, mirroring_.plane, runs_);
+  }
+  const Ground& whole() {
+    return whole_ ? *whole_ : whole_.emplace(model_, options_, std::nullopt, runs_);
   }
 
   TriangleView model_;
   const GenerateOptions& options_;
-  std::optional<Surface> best_;
+  const Mirroring& mirroring_;
+  EngineRuns runs_;
+  std::optional<Ground> half_;
+  std::optional<Ground> whole_;
+  BestOf<Surface, CostOf> best_of_;
   std::vector<StageTime> times_;
 };
 
@@ -229,43 +255,34 @@ Result<GeneratedCage> make_surface(TriangleView model, const GenerateOptions& op
   if (const Result<UnitFrame> frame = unit_frame(model); !frame) {
     return frame.error();
   }
-  constexpr double first = 0.5; // of the time
-  constexpr double usual = 0.9; // hardly ever is there a third start
-  Tries tries(model, options);
   const StartTry start = first_start(options);
-  if (const Status made = tries.make(mirroring, start, progress.part(0, first)); !made) {
-    return made.error();
+  constexpr double usual = 0.95; // of the time: hardly ever is there a third start
+  constexpr double first = rivalled * usual;
+  Tries tries(model, options, mirroring);
+  if (!tries.make(start, progress.part(0, usual))) {
+    return tries.taken();
   }
+  const auto is_enough = [&] { return is_within_budget(tries.best().cage) || !tries.may_go_on(); };
   const bool is_chosen = options.envelope_resolution == 0 && options.max_gap == 0;
   if (!is_chosen) {
     return tries.taken();
   }
   // A mirrored cage needs vertices on its plane: so few may not do.
-  if (!tries.is_within_budget() && tries.best().cage.mirror && !mirroring.is_insisted_on) {
-    const Mirroring none{std::nullopt, false, "a mirrored cage takes more vertices than asked for"};
-    if (const Status made = tries.make(none, start, progress.part(first, usual)); !made) {
-      return made.error();
-    }
+  if (!is_enough() && tries.best().cage.mirror && !mirroring.is_insisted_on &&
+      !tries.make_whole(start, "a mirrored cage takes more vertices than asked for",
+                        progress.part(first, usual))) {
+    return tries.taken();
   }
-  if (const std::optional<StartTry> rival = tries.best().rival) {
-    const GeneratedCage& cage = tries.best().cage;
-    const Remark* why_not = find(cage, Reason::not_mirrored);
-    const Mirroring same = cage.mirror
-                               ? Mirroring{mirroring.plane, true, ""}
-                               : Mirroring{std::nullopt, mirroring.is_insisted_on,
-                                           why_not == nullptr ? std::string() : why_not->message};
-    if (const Status made = tries.make(same, *rival, progress.part(first, usual)); !made) {
-      return made.error();
-    }
+  const std::optional<StartTry> rival = tries.best().rival;
+  if (rival && tries.may_go_on() && !tries.make_beside_best(*rival, progress.part(first, usual))) {
+    return tries.taken();
   }
   double done = usual;
   for (const StartTry& simpler : starts_of_fewer_handles(options)) {
-    if (tries.is_within_budget() || tries.best().cage.genus == 0) {
-      break;
-    }
     const double then = (done + 1) / 2;
-    if (const Status made = tries.make(mirroring, simpler, progress.part(done, then)); !made) {
-      return made.error();
+    if (is_enough() || tries.best().cage.genus == 0 ||
+        !tries.make(simpler, progress.part(done, then))) {
+      break;
     }
     done = then;
   }

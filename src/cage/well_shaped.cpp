@@ -1,4 +1,4 @@
-#include "cage/merit.h"
+#include "cage/best_of.h"
 #include "cage/triangle_stage.h"
 
 #include <array>
@@ -8,29 +8,29 @@ namespace cagewright {
 
 Result<Triangles> improve_well_shaped(const Ground& ground, TriangleView start,
                                       const ImproveOptions& budget, const Progress& progress) {
-  const auto merit = [](const Improved& improved) {
-    return Merit(improved.report.reached, TriangleView(improved.cage));
+  const auto merit = [](const Improved& made) {
+    return Merit(made.report.reached, TriangleView(made.cage));
   };
-  constexpr std::array<double, 2> dearer = {2, 4};
-  double done = 0.8; // of the time: hardly ever is there another try
-  Result<Improved> best = improve(start, ground.enclosed(), budget, progress.part(0, done));
+  const auto cost_of = [&](const Improved& made) { return merit(made).cost(); };
+  BestOf<Improved, decltype(cost_of)> tries(cost_of);
+  constexpr std::array<double, 3> dearer = {1, 2, 4};
+  double done = 0;
   for (const double factor : dearer) {
-    if (!best || !best->report.reached || merit(*best).is_well_shaped()) {
+    if (factor > 1 && (!tries.best().report.reached || !ground.runs().are_left() ||
+                       merit(tries.best()).is_well_shaped())) {
       break;
     }
     ImproveOptions rounder = budget;
     rounder.shape *= factor;
-    const double then = (done + 1) / 2;
-    Result<Improved> again = improve(start, ground.enclosed(), rounder, progress.part(done, then));
-    done = then;
-    if (!again || merit(*again) > merit(*best)) {
-      best = std::move(again);
+    const double then = factor > 1 ? (done + 1) / 2 : 0.8; // hardly ever is there another try
+    if (!tries.add(ground.improved(start, rounder, progress.part(done, then)))) {
+      break;
     }
+    done = then;
   }
-  if (!best) {
-    return best.error();
-  }
-  return Triangles{std::move(*best), std::nullopt, std::nullopt};
+  Result<Improved> best = tries.taken();
+  return best ? Result<Triangles>(Triangles{std::move(*best), std::nullopt, std::nullopt})
+              : best.error();
 }
 
 } // namespace cagewright

@@ -2,6 +2,8 @@
 /// Loops over independent items on all cores.
 #pragma once
 
+#include <cagewright/core/progress.h>
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -19,6 +21,18 @@ template <class Body>
 void parallel_for(std::size_t begin, std::size_t end, std::size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, grain), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      body(i);
+    }
+  });
+}
+
+/// The same, but once the computation is to stop, no other item is begun: what was to be written is
+/// then not to be used.
+template <class Body>
+void parallel_for(std::size_t begin, std::size_t end, std::size_t grain, const Progress& progress,
+                  const Body& body) {
+  parallel_for(begin, end, grain, [&](std::size_t i) {
+    if (!progress.cancelled()) {
       body(i);
     }
   });

@@ -167,6 +167,9 @@ Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches
   if (!grid) {
     return grid.error();
   }
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
   if (options.closing > 0) {
     close_gaps(*grid, options.closing * unit_of(model, options) / grid->size);
   }
@@ -177,7 +180,13 @@ Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches
   result.resolution = resolution;
   result.closing = options.closing;
   result.bridges = join_pieces(*grid);
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
   make_manifold(*grid, options.half); // bridges do not heed the plane
+  if (progress.cancelled()) {
+    return Error::cancelled();
+  }
   for (VoxelKind& kind : grid->kinds) {
     kind = kind == VoxelKind::outer ? kind : VoxelKind::feature;
   }

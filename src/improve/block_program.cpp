@@ -32,7 +32,7 @@ public:
     }
   }
 
-  Vector solve() {
+  Vector solve(const Progress& progress) {
     const auto count = static_cast<Eigen::Index>(constraints_.size());
     Vector x = Vector::Zero(size_);
     Vector bound(count);
@@ -44,7 +44,7 @@ public:
     const double typical = std::max(1e-12, bound.cwiseAbs().sum() / static_cast<double>(count + 1));
     Vector s = (-bound).cwiseMax(typical / 2);
     Vector z = Vector::Constant(count, 10 * typical_multiplier(bound));
-    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    for (int iteration = 0; iteration < most_iterations && !progress.cancelled(); ++iteration) {
       const Vector hx = times_hessian(x);
       const Vector dual = hx + gradient_ - transposed(z);
       const Vector primal = times(x) - bound + slack_ * z - s;
@@ -310,8 +310,8 @@ private:
 
 std::vector<Vec3> minimize(const BlockQuadratic& quadratic,
                            std::span<const BlockConstraint> constraints,
-                           const BlockProgramOptions& options) {
-  const Vector x = InteriorPoint(quadratic, constraints, options).solve();
+                           const BlockProgramOptions& options, const Progress& progress) {
+  const Vector x = InteriorPoint(quadratic, constraints, options).solve(progress);
   std::vector<Vec3> result(quadratic.gradient.size());
   for (std::size_t v = 0; v < result.size(); ++v) {
     result[v] = x.segment<3>(static_cast<Eigen::Index>(3 * v));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cagewright/core/geometry.h>
+#include <cagewright/core/progress.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
@@ -51,12 +52,12 @@ struct BlockProgramOptions {
 /// method (Mehrotra's predictor and corrector; Nocedal and Wright, "Numerical Optimization", 16.6).
 /// The slack sees to it that there always is a solution. The start is x = 0; that is also the
 /// answer if the method does not converge, which happens when the constraints contradict each other
-/// by far more than the slack.
+/// by far more than the slack; and if the computation is to stop.
 ///
 /// Constraints over the same vertices in the same direction cost least if they follow each other.
 /// Cost: some 10 sparse factorisations of a 3N x 3N matrix.
 std::vector<Vec3> minimize(const BlockQuadratic& quadratic,
                            std::span<const BlockConstraint> constraints,
-                           const BlockProgramOptions& options = {});
+                           const BlockProgramOptions& options = {}, const Progress& progress = {});
 
 } // namespace cagewright

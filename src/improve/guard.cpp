@@ -50,6 +50,21 @@ std::vector<Index> weld(std::span<const Vec3> positions) {
   return representative;
 }
 
+TriangleMesh with_strays(TriangleView model) {
+  TriangleMesh result{{model.positions.begin(), model.positions.end()},
+                      {model.triangles.begin(), model.triangles.end()}};
+  std::vector<bool> used(model.positions.size(), false);
+  for (const Triangle& t : model.triangles) {
+    used[t[0]] = used[t[1]] = used[t[2]] = true;
+  }
+  for (Index v = 0; v < used.size(); ++v) {
+    if (!used[v]) {
+      result.triangles.push_back({v, v, v});
+    }
+  }
+  return result;
+}
+
 std::vector<ModelSurface::Part> connected_parts(TriangleView model) {
   const std::vector<Index> welded = weld(model.positions);
   DisjointSets sets(welded.size());
@@ -220,23 +235,9 @@ void FaceBoxes::find(const Box3& box, std::vector<Index>& found) const {
 }
 
 ModelSurface::ModelSurface(TriangleView model, double unit)
-    : tree(model), diagonal(unit > 0 ? unit : bounding_box(model).diagonal().norm()),
-      box(bounding_box(model.positions)), parts(connected_parts(model)) {}
-
-TriangleMesh with_strays(TriangleView model) {
-  TriangleMesh result{{model.positions.begin(), model.positions.end()},
-                      {model.triangles.begin(), model.triangles.end()}};
-  std::vector<bool> used(model.positions.size(), false);
-  for (const Triangle& t : model.triangles) {
-    used[t[0]] = used[t[1]] = used[t[2]] = true;
-  }
-  for (Index v = 0; v < used.size(); ++v) {
-    if (!used[v]) {
-      result.triangles.push_back({v, v, v});
-    }
-  }
-  return result;
-}
+    : mesh(with_strays(model)), tree(mesh),
+      diagonal(unit > 0 ? unit : bounding_box(TriangleView(mesh)).diagonal().norm()),
+      box(bounding_box(model.positions)), parts(connected_parts(mesh)) {}
 
 std::optional<ClosestPoints> Guard::too_near(const CageMesh& cage, const Patch& patch) const {
   for (const Triangle& t : patch.added) {

@@ -29,11 +29,15 @@ private:
   std::vector<float> high_[3];
 };
 
-/// What the improvement knows about the model.
+/// What the improvement knows about the model: made once for all that is made round it.
 struct ModelSurface {
   /// \param unit  the length that others are fractions of; 0: the diagonal of the model's box
+  /// Cost: O(T log T); some 0.3 s for 350,000 triangles.
   explicit ModelSurface(TriangleView model, double unit = 0);
 
+  /// The model with a triangle without extent for every vertex that no triangle uses: it must be
+  /// inside the cage too.
+  TriangleMesh mesh;
   SurfaceTree tree;
   double diagonal = 0;
   Box3 box;
@@ -45,10 +49,6 @@ struct ModelSurface {
   };
   std::vector<Part> parts;
 };
-
-/// The model with a triangle without extent for every vertex that no triangle uses: it must be
-/// inside the cage too.
-TriangleMesh with_strays(TriangleView model);
 
 /// How far vertices of a half that are not on its plane keep from it, in clearances.
 inline constexpr double plane_gap = 0.5;

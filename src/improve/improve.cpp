@@ -5,6 +5,7 @@
 #include "improve/relax.h"
 #include "improve/shave.h"
 #include "improve/simplify.h"
+#include "mesh/shape_limits.h"
 #include <cagewright/mesh/measures.h>
 
 #include <algorithm>
@@ -56,12 +57,12 @@ ObjectiveWeights weights_for(TriangleView start, TriangleView model, const Impro
 
 class Improvement {
 public:
-  Improvement(TriangleView start, TriangleView model, const ImproveOptions& options)
-      : options_(options), surface_(model, options.diagonal),
+  Improvement(TriangleView start, const ModelSurface& surface, const ImproveOptions& options)
+      : options_(options), surface_(surface),
         guard_(surface_, options.clearance * surface_.diagonal),
         cage_(start, options.extent, options.parts, options.bands),
         budget_(vertex_budget(cage_.mesh, options)),
-        objective_(surface_, weights_for(start, model, options, budget_)),
+        objective_(surface_, weights_for(start, surface.mesh, options, budget_)),
         most_valence_(static_cast<std::size_t>(options.most_valence)) {}
 
   Result<Improved> run(const Progress& progress) {
@@ -139,10 +140,10 @@ private:
       constexpr int attempts = 3;
       for (int i = 0; i < attempts && over_budget() && !progress.cancelled(); ++i) {
         with_flips ? settle(4, progress) : relax_steps(4, progress);
-        most_valence_ += 2;
-        limits_.worst_defect *= 2;
-        limits_.least_quality = 0.035;
-        limits_.sharpest_bend = (limits_.sharpest_bend - 1) / 2;
+        most_valence_ += shape_limits::more_valence_if_stuck;
+        limits_.worst_defect *= shape_limits::worse_defect_if_stuck;
+        limits_.least_quality = shape_limits::least_quality_if_stuck;
+        limits_.sharpest_bend = shape_limits::sharpest_bend_if_stuck(limits_.sharpest_bend);
         reduce(Placement::clear_of_model, budget_, progress);
       }
       if (!smallest || cage_.mesh.vertex_count() < smallest->mesh.vertex_count()) {
@@ -305,8 +306,7 @@ private:
   // shape is made to count more until it is better. \returns the objective,
   // as it was weighted before
   double settle_shapes(const Progress& progress) {
-    constexpr double needle = 0.05;
-    mend_needles(cage_, guard_, objective_, needle, most_valence_);
+    mend_needles(cage_, guard_, objective_, shape_limits::mended, most_valence_);
     relax_steps(2, progress.part(0, 0.25));
     const double weight = objective_.weights().shape;
     constexpr int attempts = 3;
@@ -323,13 +323,13 @@ private:
   // Makes the shape of faces count above all for vertices round a needle, and more so if one is
   // left.
   void round_needles(double weight) {
-    constexpr double needle = 0.032;
     constexpr int attempts = 4;
     constexpr double dearer = 10;
     for (int i = 1; i <= attempts; ++i) {
       std::vector<Index> movable;
       for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
-        if (cage_.mesh.has_face(f) && shape_quality(corners_of(cage_.mesh, f)) < needle) {
+        if (cage_.mesh.has_face(f) &&
+            shape_quality(corners_of(cage_.mesh, f)) < shape_limits::nearly_a_needle) {
           for (const Index v : cage_.mesh.face(f)) {
             const std::vector<Index> beside = cage_.mesh.neighbors(v);
             movable.insert(movable.end(), beside.begin(), beside.end());
@@ -347,14 +347,17 @@ private:
     }
   }
 
-  // Whether more than one face in twenty is long and thin.
+  // Whether too many faces are long and thin, or nearly so.
   [[nodiscard]] bool has_thin_faces() const {
-    constexpr double thin = 0.16;
     std::size_t count = 0;
     for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
-      count += cage_.mesh.has_face(f) && shape_quality(corners_of(cage_.mesh, f)) < thin ? 1 : 0;
+      count += cage_.mesh.has_face(f) &&
+                       shape_quality(corners_of(cage_.mesh, f)) < shape_limits::nearly_thin
+                   ? 1
+                   : 0;
     }
-    return 20 * count >= cage_.mesh.face_count();
+    const auto faces = static_cast<double>(cage_.mesh.face_count());
+    return static_cast<double>(count) >= shape_limits::few_thin * faces;
   }
 
   // As few vertices as the gap allows. A cage that is a little too coarse is refined where it is
@@ -436,7 +439,7 @@ private:
   static constexpr std::size_t fewest = 4; // vertices of a closed surface
 
   ImproveOptions options_;
-  ModelSurface surface_;
+  const ModelSurface& surface_;
   Guard guard_;
   WorkingCage cage_;
   std::size_t budget_;
@@ -445,10 +448,7 @@ private:
   ShapeLimits limits_;
 };
 
-} // namespace
-
-Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOptions& options,
-                         const Progress& progress) {
+Status check(TriangleView start, TriangleView model, const ImproveOptions& options) {
   if (start.triangles.empty()) {
     return Error{ErrorCode::invalid_cage, "the cage to start from has no faces"};
   }
@@ -481,7 +481,26 @@ Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOp
                    [](double d) { return d > 0 && std::isfinite(d); })) {
     return Error{ErrorCode::invalid_option, "a density is not a finite number above 0"};
   }
-  return Improvement(start, with_strays(model), options).run(progress);
+  return success();
+}
+
+} // namespace
+
+Result<Improved> improve(TriangleView start, const ModelSurface& model,
+                         const ImproveOptions& options, const Progress& progress) {
+  if (const Status good = check(start, model.mesh, options); !good) {
+    return good.error();
+  }
+  return Improvement(start, model, options).run(progress);
+}
+
+Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOptions& options,
+                         const Progress& progress) {
+  if (const Status good = check(start, model, options); !good) {
+    return good.error();
+  }
+  const ModelSurface surface(model, options.diagonal);
+  return Improvement(start, surface, options).run(progress);
 }
 
 } // namespace cagewright

@@ -14,6 +14,8 @@
 
 namespace cagewright {
 
+struct ModelSurface;
+
 struct ImproveOptions {
   /// At most so many; 0: no limit, but no more than the start has.
   int vertices = 100;
@@ -82,5 +84,10 @@ struct Improved {
 /// vertices), cancelled. The same result on any number of threads.
 Result<Improved> improve(TriangleView start, TriangleView model, const ImproveOptions& options = {},
                          const Progress& progress = {});
+
+/// The same for a model that has been looked at already: lengths are fractions of its `diagonal`,
+/// whatever the options say.
+Result<Improved> improve(TriangleView start, const ModelSurface& model,
+                         const ImproveOptions& options = {}, const Progress& progress = {});
 
 } // namespace cagewright

@@ -148,9 +148,9 @@ double Objective::change(const CageMesh& cage, std::span<const double> face_valu
   return sum;
 }
 
-std::vector<double> Objective::face_values(const CageMesh& cage) const {
+std::vector<double> Objective::face_values(const CageMesh& cage, const Progress& progress) const {
   std::vector<double> values(cage.face_end(), 0);
-  parallel_for(0, values.size(), 1, [&](std::size_t f) {
+  parallel_for(0, values.size(), 1, progress, [&](std::size_t f) {
     if (cage.has_face(static_cast<Index>(f))) {
       values[f] = face(corners_of(cage, static_cast<Index>(f)));
     }

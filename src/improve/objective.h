@@ -3,6 +3,7 @@
 #pragma once
 
 #include "improve/guard.h"
+#include <cagewright/core/progress.h>
 #include <cagewright/mesh/measures.h>
 
 #include <limits>
@@ -95,7 +96,8 @@ public:
                               const Patch& patch) const;
 
   /// The parts of all faces, by number; 0 for those that are not there.
-  [[nodiscard]] std::vector<double> face_values(const CageMesh& cage) const;
+  [[nodiscard]] std::vector<double> face_values(const CageMesh& cage,
+                                                const Progress& progress = {}) const;
 
   /// The change of the cage's volume by a patch; of a half, the change of the half's.
   static double volume_change(const CageMesh& cage, const Patch& patch);

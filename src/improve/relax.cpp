@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "improve/block_program.h"
 #include "improve/face_terms.h"
+#include "improve/trust.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,6 +48,7 @@ public:
   }
 
   double run(const RelaxOptions& options, const Progress& progress) {
+    progress_ = progress.quiet();
     double& reach = cage_.reach;
     reach = std::min(reach, options.first_step * objective_.diagonal());
     double value = total(at_);
@@ -56,18 +58,20 @@ public:
       // The constraints curve: what the step has overshot is taken back by a step of its own.
       const Positions corrected = moved(goal, reach / 4, false);
       const Positions next = valid_part(corrected);
+      if (progress.cancelled()) {
+        break; // what was made last is not to be used
+      }
       const double lower = total(next);
       if (lower < value) {
-        const double gain = value - lower;
-        const double promised = value - total(goal);
+        const StepGain step_gain{value - lower, value - total(goal)};
         take(next);
         value = lower;
-        if (gain < options.least_gain * value && gain > promised / 4) {
+        if (step_gain.is_enough(options.least_gain * value)) {
           break;
         }
-        reach *= gain > promised / 2 ? 1.3 : gain < promised / 4 ? 0.5 : 1;
+        reach *= step_gain.reach_factor();
       } else {
-        reach *= 0.4;
+        reach *= reach_factor_in_vain;
       }
     }
     return value;
@@ -88,7 +92,7 @@ private:
         0, faces_.size(), 16, 0.0,
         [&](std::size_t first, std::size_t last) {
           double sum = 0;
-          for (std::size_t i = first; i < last; ++i) {
+          for (std::size_t i = first; i < last && !progress_.cancelled(); ++i) {
             const Corners t = corners(at, faces_[i]);
             sum += (t[0] - center_).dot((t[1] - center_).cross(t[2] - center_)) / 6 +
                    objective_.face(t);
@@ -105,7 +109,7 @@ private:
       FaceTerms terms;
     };
     std::vector<Piece> pieces(faces_.size());
-    parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
+    parallel_for(0, faces_.size(), 1, progress_, [&](std::size_t i) {
       Piece& piece = pieces[i];
       const Corners t = corners(at, faces_[i]);
       add_constraints(faces_[i], t, reach, piece.constraints);
@@ -164,7 +168,7 @@ private:
     }
     // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
     const double slack = towards_goal ? 1e-6 : 0.05 * guard_.clearance() / unit;
-    const std::vector<Vec3> step = minimize(quadratic, constraints, {.slack = slack});
+    const std::vector<Vec3> step = minimize(quadratic, constraints, {.slack = slack}, progress_);
     Positions result = at;
     for (Index v = 0; v < moving_.size(); ++v) {
       Vec3& p = result[moving_[v]];
@@ -322,7 +326,7 @@ private:
       }
     }
     std::vector<std::uint8_t> bad(faces_.size(), 0);
-    parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
+    parallel_for(0, faces_.size(), 1, progress_, [&](std::size_t i) {
       const Triangle& t = moved.face(faces_[i]);
       if (is_still(t) || due[faces_[i]] == 0) {
         return; // as before the step, when all was well; others report what they do to it
@@ -368,7 +372,7 @@ private:
   [[nodiscard]] bool loses_a_part(const Positions& next) const {
     const std::vector<ModelSurface::Part>& parts = guard_.model().parts;
     std::vector<std::uint8_t> lost(parts.size(), 0);
-    parallel_for(0, parts.size(), 1, [&](std::size_t i) {
+    parallel_for(0, parts.size(), 1, progress_, [&](std::size_t i) {
       double angle = 0;
       for (Index f = 0; f < cage_.mesh.face_end(); ++f) {
         if (cage_.mesh.has_face(f)) {
@@ -398,6 +402,7 @@ private:
   std::vector<Index> moving_;
   std::vector<Index> faces_; // at moving vertices
   Vec3 center_ = Vec3::Zero();
+  Progress progress_; // of the run
 };
 
 } // namespace

@@ -37,14 +37,14 @@ public:
   Simplifier(WorkingCage& cage, const Guard& guard, const Objective& objective,
              const SimplifyOptions& options)
       : cage_(cage), guard_(guard), objective_(objective), options_(options),
-        stamps_(cage.mesh.vertex_end(), 0), failed_(cage.mesh.vertex_end()) {
-    if (options.placement == Placement::clear_of_model) {
-      values_ = objective.face_values(cage.mesh);
-    }
-  }
+        stamps_(cage.mesh.vertex_end(), 0), failed_(cage.mesh.vertex_end()) {}
 
   bool run(const Progress& progress) {
+    progress_ = progress.quiet();
     const std::size_t start = cage_.mesh.vertex_count();
+    if (start > options_.vertices && options_.placement == Placement::clear_of_model) {
+      values_ = objective_.face_values(cage_.mesh, progress);
+    }
     if (start > options_.vertices && !progress.cancelled()) {
       // Where a few of many edges are to go it is enough to look at the most promising.
       const bool few =
@@ -87,7 +87,8 @@ private:
   // Evaluates the edges and puts those that can go in the queue.
   void offer(const std::vector<Edge>& edges) {
     std::vector<std::optional<Candidate>> candidates(edges.size());
-    parallel_for(0, edges.size(), 1, [&](std::size_t i) { candidates[i] = evaluate(edges[i]); });
+    parallel_for(0, edges.size(), 1, progress_,
+                 [&](std::size_t i) { candidates[i] = evaluate(edges[i]); });
     for (std::size_t i = 0; i < edges.size(); ++i) {
       if (candidates[i]) {
         push(*candidates[i]);
@@ -102,7 +103,8 @@ private:
   void guess_all() {
     const std::vector<Edge> edges = all_edges();
     std::vector<std::optional<double>> costs(edges.size());
-    parallel_for(0, edges.size(), 4, [&](std::size_t i) { costs[i] = quick_guess(edges[i]); });
+    parallel_for(0, edges.size(), 4, progress_,
+                 [&](std::size_t i) { costs[i] = quick_guess(edges[i]); });
     std::vector<Edge> unknown;
     for (std::size_t i = 0; i < edges.size(); ++i) {
       if (costs[i]) {
@@ -249,7 +251,7 @@ private:
     const Index kept = patch.vertex;
     ++stamps_[patch.gone];
     if (!values_.empty()) {
-      parallel_for(0, added.size(), 1, [&](std::size_t i) {
+      parallel_for(0, added.size(), 1, progress_, [&](std::size_t i) {
         values_[added[i]] = objective_.face(corners_of(cage_.mesh, added[i]));
       });
     }
@@ -300,6 +302,7 @@ private:
   };
   std::unordered_map<std::uint64_t, Known> known_; // looked up only, never gone through
   std::priority_queue<Candidate> queue_;
+  Progress progress_;    // of the run
   bool changed_ = false; // since all edges were last offered
   int retries_ = 0;
 };

@@ -24,6 +24,7 @@ public:
         objective_(objective), options_(options) {}
 
   Candidate run(const QuadCage& start, const Progress& progress) {
+    progress_ = progress.quiet();
     // Vertices are numbered as those of to_polygons() from here on.
     Candidate now{QuadCage(start.to_polygons()), 0, 0};
     now.value = value_of(now.cage);
@@ -83,7 +84,7 @@ private:
   void settle(Candidate& candidate, int steps) const {
     RelaxQuadsOptions relax = options_.relax;
     relax.steps = steps;
-    candidate.value = relax_quads(candidate.cage, guard_, objective_, relax);
+    candidate.value = relax_quads(candidate.cage, guard_, objective_, relax, progress_);
   }
 
   [[nodiscard]] std::size_t beyond_limits(const QuadCage& cage) const {
@@ -120,7 +121,7 @@ private:
     if (candidates.size() > static_cast<std::size_t>(options_.tries)) {
       candidates.erase(candidates.begin() + options_.tries, candidates.end());
     }
-    parallel_for(0, candidates.size(), 1, [&](std::size_t i) {
+    parallel_for(0, candidates.size(), 1, progress_, [&](std::size_t i) {
       const bool is_unfit = beyond_limits(candidates[i].cage) > 0;
       settle(candidates[i], (is_unfit ? 2 : 1) * options_.settle);
       candidates[i].price = price(candidates[i]);
@@ -140,7 +141,7 @@ private:
     RelaxQuadsOptions off = options_.relax;
     off.keep += options_.room;
     off.steps = 2;
-    roomy.value = relax_quads(roomy.cage, wide_, objective_, off);
+    roomy.value = relax_quads(roomy.cage, wide_, objective_, off, progress_);
     const PolygonMesh mesh = roomy.cage.to_polygons();
     const std::size_t count = whole_vertices(roomy.cage);
     const auto saved = [&](const Candidate& c) {
@@ -148,7 +149,7 @@ private:
     };
     const std::vector<QuadStrip> strips = strips_of(mesh);
     std::vector<std::optional<Candidate>> found(strips.size());
-    parallel_for(0, strips.size(), 1, [&](std::size_t i) {
+    parallel_for(0, strips.size(), 1, progress_, [&](std::size_t i) {
       std::optional<QuadCage> cage = collapsed(mesh, roomy.cage, strips[i]);
       if (cage && whole_vertices(*cage) < count) {
         found[i] = Candidate{std::move(*cage), 0, 0};
@@ -168,7 +169,7 @@ private:
     };
     const std::vector<QuadStrip> strips = strips_of(mesh);
     std::vector<std::optional<Candidate>> found(strips.size());
-    parallel_for(0, strips.size(), 1, [&](std::size_t i) {
+    parallel_for(0, strips.size(), 1, progress_, [&](std::size_t i) {
       Candidate candidate{QuadCage(split_strip(mesh, strips[i])), 0, 0};
       if (excess(candidate.cage, factor) > 0 || !is_valid(candidate.cage)) {
         return;
@@ -281,6 +282,7 @@ private:
   QuadGuard wide_;
   const Objective& objective_;
   ExchangeLoopsOptions options_;
+  Progress progress_; // of the run
 };
 
 } // namespace

@@ -108,14 +108,18 @@ bool is_valid(const QuadCage& cage, const QuadGuard& guard) {
 
 Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions& options,
                                        const Progress& progress) {
+  return make_grid_quads(ModelSurface(model, options.quads.diagonal), options, progress);
+}
+
+Result<Quadrangulated> make_grid_quads(const ModelSurface& surface, const GridQuadOptions& options,
+                                       const Progress& progress) {
   // A closed surface of quads has two vertices more than faces.
   const int most = options.vertices > 0 ? options.vertices : options.faces + 2;
   constexpr int fewest = 8;
   if (most < fewest) {
     return Error{ErrorCode::invalid_option, "blocks have eight vertices at least"};
   }
-  const TriangleMesh all = with_strays(model);
-  const ModelSurface surface(all, options.quads.diagonal);
+  const TriangleMesh& all = surface.mesh;
   const double clearance = options.quads.clearance * surface.diagonal;
   const Result<Blocks> start = best_blocks(all, options, clearance, most, progress.part(0, 0.1));
   if (!start) {
@@ -135,7 +139,7 @@ Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions
   settle.slender = 1;
   relax_quads(cage, guard, objective, settle, progress.part(0.1, 0.3));
   if (options.loosest > 0 &&
-      looseness(cage.to_polygons(), surface, all, options.quads) > options.loosest) {
+      looseness(cage.to_polygons(), surface, options.quads) > options.loosest) {
     return Error{ErrorCode::no_valid_cage, "blocks do not fit the model"};
   }
   ExchangeLoopsOptions loops;
@@ -158,9 +162,8 @@ Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions
   return result;
 }
 
-double looseness(const PolygonMesh& cage, const ModelSurface& surface, TriangleView model,
-                 const QuadOptions& options) {
-  const Objective objective(surface, weights_for(model, options, 0));
+double looseness(const PolygonMesh& cage, const ModelSurface& model, const QuadOptions& options) {
+  const Objective objective(model, weights_for(model.mesh, options, 0));
   const TriangleMesh triangles = to_triangle_mesh(cage);
   double sum = 0;
   for (const Triangle& t : triangles.triangles) {

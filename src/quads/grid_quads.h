@@ -27,11 +27,13 @@ struct GridQuadOptions {
 Result<Quadrangulated> make_grid_quads(TriangleView model, const GridQuadOptions& options,
                                        const Progress& progress = {});
 
+/// The same for a model that has been looked at already: lengths are fractions of its `diagonal`,
+/// whatever the options say.
+Result<Quadrangulated> make_grid_quads(const ModelSurface& model, const GridQuadOptions& options,
+                                       const Progress& progress = {});
+
 /// What there is between a cage and its model: the integral over the faces, cut as they are
 /// written, of d + square d^2 / D, d the distance to the model and D its diagonal.
-///
-/// \param surface  of the model, which has its strays: see with_strays()
-double looseness(const PolygonMesh& cage, const ModelSurface& surface, TriangleView model,
-                 const QuadOptions& options);
+double looseness(const PolygonMesh& cage, const ModelSurface& model, const QuadOptions& options);
 
 } // namespace cagewright

@@ -174,6 +174,15 @@ QuadReport report_of(const PolygonMesh& mesh) {
 
 Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
                                   const QuadOptions& options, const Progress& progress) {
+  if (model.positions.empty()) {
+    return Error{ErrorCode::unfit_model, "the model has no vertices"};
+  }
+  return make_quads(start, ModelSurface(model, options.diagonal), options, progress);
+}
+
+Result<Quadrangulated> make_quads(TriangleView start, const ModelSurface& surface,
+                                  const QuadOptions& options, const Progress& progress) {
+  const TriangleView model = surface.mesh;
   if (start.triangles.empty()) {
     return Error{ErrorCode::invalid_cage, "the cage to make quads of has no faces"};
   }
@@ -193,11 +202,9 @@ Result<Quadrangulated> make_quads(TriangleView start, TriangleView model,
   if (!border_is_in_plane(cage)) {
     return Error{ErrorCode::invalid_cage, "the cage to make quads of is open"};
   }
-  const TriangleMesh all = with_strays(model);
-  const ModelSurface surface(all, options.diagonal);
   const double clearance = options.clearance * surface.diagonal;
   const double face_area = surface_area(start) / static_cast<double>(start.triangles.size());
-  const Objective objective(surface, weights_for(all, options, face_area));
+  const Objective objective(surface, weights_for(model, options, face_area));
   RelaxQuadsOptions make_room;
   make_room.steps = 3;
   make_room.keep = options.clearance + options.room;

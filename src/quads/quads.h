@@ -14,6 +14,8 @@
 
 namespace cagewright {
 
+struct ModelSurface;
+
 struct QuadOptions {
   QuadLimits limits = {};
   /// Least distance from every part of every face to the model, in diagonals of the model's box.
@@ -53,6 +55,11 @@ struct Quadrangulated {
 /// Errors: invalid_option, invalid_cage (no faces, or a border off the plane x = 0), unfit_model
 /// (no vertices), cancelled. The same result on any number of threads.
 Result<Quadrangulated> make_quads(TriangleView cage, TriangleView model,
+                                  const QuadOptions& options = {}, const Progress& progress = {});
+
+/// The same for a model that has been looked at already: lengths are fractions of its `diagonal`,
+/// whatever the options say.
+Result<Quadrangulated> make_quads(TriangleView cage, const ModelSurface& model,
                                   const QuadOptions& options = {}, const Progress& progress = {});
 
 /// The same vertices and surface, with quads in place of pairs of triangles in one plane, if

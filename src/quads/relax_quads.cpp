@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "improve/block_program.h"
 #include "improve/face_terms.h"
+#include "improve/trust.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,6 +92,7 @@ public:
   }
 
   double run(const Progress& progress) {
+    progress_ = progress.quiet();
     double reach = options_.first_step * objective_.diagonal();
     double value = total(at_);
     for (int step = 0; step < options_.steps && !progress.cancelled(); ++step) {
@@ -98,22 +100,24 @@ public:
       const Positions goal = moved(at_, reach, true);
       // The constraints curve: what the step has overshot is taken back by a step of its own.
       const Positions next = valid_part(moved(goal, reach / 4, false));
+      if (progress.cancelled()) {
+        break; // what was made last is not to be used
+      }
       const double lower = total(next);
       // What is to be kept away further than before may cost something.
       const bool makes_room = keep_ > 2 * guard_.clearance();
       if (lower < value || makes_room) {
-        const double gain = value - lower;
-        const double promised = value - total(goal);
+        const StepGain step_gain{value - lower, value - total(goal)};
         at_ = next;
         cage_.set_positions(at_);
         make_sound();
         value = lower;
-        if (gain < options_.least_gain * value && gain > promised / 4 && !makes_room) {
+        if (step_gain.is_enough(options_.least_gain * value) && !makes_room) {
           break;
         }
-        reach *= gain > promised / 2 ? 1.3 : gain < promised / 4 ? 0.5 : 1;
+        reach *= step_gain.reach_factor();
       } else {
-        reach *= 0.4;
+        reach *= reach_factor_in_vain;
       }
     }
     return value;
@@ -206,7 +210,7 @@ private:
   [[nodiscard]] Positions moved(const Positions& at, double reach, bool towards_goal) const {
     std::vector<Piece> pieces(faces_.size());
     const KeepClear clear{guard_.model().tree, keep_, guard_.clearance(), reach, reach / 2};
-    parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
+    parallel_for(0, faces_.size(), 1, progress_, [&](std::size_t i) {
       Piece& piece = pieces[i];
       const CageFace& face = cage_.face(faces_[i]);
       const FaceParts parts(face, FaceParts::Of::all);
@@ -267,10 +271,11 @@ private:
     // Multipliers are near 0.1: this is well within the margin that the constraints ask for.
     const double soft = 0.05 * guard_.clearance() / unit;
     std::vector<Vec3> step =
-        minimize(quadratic, constraints, {.slack = towards_goal ? 1e-6 : soft});
+        minimize(quadratic, constraints, {.slack = towards_goal ? 1e-6 : soft}, progress_);
     const auto is_zero = [](const Vec3& v) { return v == Vec3::Zero(); };
     if (towards_goal && std::all_of(step.begin(), step.end(), is_zero)) {
-      step = minimize(quadratic, constraints, {.slack = soft}); // they contradict each other
+      step = minimize(quadratic, constraints, {.slack = soft},
+                      progress_); // they contradict each other
     }
     Positions result = at;
     for (Index v = 0; v < living_.size(); ++v) {
@@ -525,7 +530,7 @@ private:
       }
     }
     std::vector<std::uint8_t> bad(faces_.size(), 0);
-    parallel_for(0, faces_.size(), 1, [&](std::size_t i) {
+    parallel_for(0, faces_.size(), 1, progress_, [&](std::size_t i) {
       const CageFace& face = cage_.face(faces_[i]);
       const bool is_due =
           has_changed(face) || std::any_of(moved_back.begin(), moved_back.end(), [&](Index f) {
@@ -599,7 +604,8 @@ private:
   const QuadGuard& guard_;
   const Objective& objective_;
   RelaxQuadsOptions options_;
-  Positions at_; // the present, valid positions of all vertices
+  Progress progress_; // of the run
+  Positions at_;      // the present, valid positions of all vertices
   std::vector<Index> number_;
   std::vector<Index> living_;
   std::vector<Index> faces_;

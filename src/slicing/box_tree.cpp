@@ -104,7 +104,7 @@ private:
 
   void measure(std::size_t at) {
     BoxNode& node = tree_.nodes[at];
-    parallel_for(0, 3, 1, [&](std::size_t axis) {
+    each_unless_cancelled(3, [&](std::size_t axis) {
       node.sections[axis] = cross_section(grid_, owners_, static_cast<std::uint32_t>(at), node.box,
                                           static_cast<int>(axis), options_.cross_section);
     });

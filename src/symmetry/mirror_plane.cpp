@@ -57,7 +57,8 @@ double mean_of(std::span<const double> numbers) {
 /// The surface in coordinates where its middle is the origin and its diagonal 1.
 class Surface {
 public:
-  Surface(TriangleView model, const Vec3& origin) {
+  /// Not usable if it is to stop.
+  Surface(TriangleView model, const Vec3& origin, const Progress& progress) {
     const Box3 box = bounding_box(model);
     diagonal_ = box.diagonal().norm();
     if (model.triangles.empty() || !(diagonal_ > 0) || !std::isfinite(diagonal_)) {
@@ -85,7 +86,9 @@ public:
     center_ += diagonal_ * middle;
     box_center_ = -middle;
     world_origin_ = (origin - center_) / diagonal_;
-    usable_ = true;
+    if (progress.cancelled()) {
+      return;
+    }
     for (const Triangle& t : mesh.triangles) {
       const double part = area_of(mesh, t);
       const Vec3 sum = mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]];
@@ -97,7 +100,11 @@ public:
     }
     covariance_ /= area;
     sample(mesh, up_to, area);
+    if (progress.cancelled()) {
+      return;
+    }
     tree_ = TriangleBvh(mesh);
+    usable_ = true;
   }
 
   [[nodiscard]] bool usable() const { return usable_; }
@@ -449,7 +456,7 @@ int MirrorPlane::axis() const {
 
 std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorOptions& options,
                                                const Progress& progress) {
-  const Surface surface(model, options.origin);
+  const Surface surface(model, options.origin, progress);
   if (!surface.usable()) {
     return std::nullopt;
   }
@@ -459,6 +466,9 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
   }
   // Most of them are far from anything: a few points show it.
   for (Judged& candidate : best) {
+    if (progress.cancelled()) {
+      return std::nullopt;
+    }
     const Plane turned = refined(surface, candidate.plane, true, few);
     const Errors errors = surface.errors(turned, few, astray);
     if (errors.mean < candidate.errors.mean) {
@@ -505,14 +515,18 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model, const MirrorO
   return described(surface, *chosen);
 }
 
-std::optional<MirrorPlane> best_mirror_plane(TriangleView model, int axis, const Vec3& origin) {
-  const Surface surface(model, origin);
+std::optional<MirrorPlane> best_mirror_plane(TriangleView model, int axis, const Vec3& origin,
+                                             const Progress& progress) {
+  const Surface surface(model, origin, progress);
   if (!surface.usable()) {
     return std::nullopt;
   }
   std::optional<Judged> best;
   const Vec3 normal = Vec3::Unit(axis);
   for (const Vec3& through : {surface.world_origin(), surface.box_center(), Vec3(Vec3::Zero())}) {
+    if (progress.cancelled()) {
+      return std::nullopt;
+    }
     const double offset = normal.dot(through);
     if (std::abs(offset) > 0.5) {
       continue; // the model lies on one side of it

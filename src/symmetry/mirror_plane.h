@@ -37,9 +37,10 @@ std::optional<MirrorPlane> detect_mirror_plane(TriangleView model,
                                                const MirrorOptions& options = {},
                                                const Progress& progress = {});
 
-/// The best plane across the world's axis 0, 1 or 2, however good. None for a model without area.
-/// \param origin  a plane through it is preferred if it does as well
+/// The best plane across the world's axis 0, 1 or 2, however good. None for a model without area,
+/// or if it is to stop. \param origin  a plane through it is preferred if it does as well
 std::optional<MirrorPlane> best_mirror_plane(TriangleView model, int axis,
-                                             const Vec3& origin = Vec3::Zero());
+                                             const Vec3& origin = Vec3::Zero(),
+                                             const Progress& progress = {});
 
 } // namespace cagewright

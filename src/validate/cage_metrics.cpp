@@ -49,12 +49,13 @@ struct Distances {
   double max = 0;
 };
 
-Distances distances_to(const TriangleBvh& model, const std::vector<Vec3>& points) {
+Distances distances_to(const TriangleBvh& model, const std::vector<Vec3>& points,
+                       const Progress& progress) {
   return parallel_reduce_ordered(
       0, points.size(), 256, Distances(),
       [&](std::size_t first, std::size_t last) {
         Distances found;
-        for (std::size_t i = first; i < last; ++i) {
+        for (std::size_t i = first; i < last && !progress.cancelled(); ++i) {
           const NearestPoint nearest = model.nearest(points[i]);
           if (nearest) {
             found.sum += nearest.distance;
@@ -69,15 +70,19 @@ Distances distances_to(const TriangleBvh& model, const std::vector<Vec3>& points
       });
 }
 
-void measure_distances(TriangleView cage, TriangleView model, CageMetrics& metrics) {
+void measure_distances(TriangleView cage, TriangleView model, CageMetrics& metrics,
+                       const Progress& progress) {
   const double diag = model.triangles.empty() ? 0 : bounding_box(model).diagonal().norm();
   if (!(diag > 0) || cage.triangles.empty()) {
     return;
   }
   const TriangleBvh model_bvh(model);
+  if (progress.cancelled()) {
+    return;
+  }
   metrics.clearance = mesh_distance(TriangleBvh(cage), model_bvh).distance / diag;
   const std::vector<Vec3> samples = surface_samples(cage);
-  const Distances on_surface = distances_to(model_bvh, samples);
+  const Distances on_surface = distances_to(model_bvh, samples, progress);
   if (!samples.empty()) {
     metrics.mean_distance = on_surface.sum / static_cast<double>(samples.size()) / diag;
   }
@@ -87,7 +92,8 @@ void measure_distances(TriangleView cage, TriangleView model, CageMetrics& metri
       corners.push_back(cage.positions[v]);
     }
   }
-  metrics.max_distance = std::max(on_surface.max, distances_to(model_bvh, corners).max) / diag;
+  metrics.max_distance =
+      std::max(on_surface.max, distances_to(model_bvh, corners, progress).max) / diag;
 }
 
 void measure_shapes(TriangleView cage, CageMetrics& metrics) {
@@ -141,7 +147,7 @@ double min_dihedral(TriangleView cage) {
 } // namespace
 
 CageMetrics measure_cage(TriangleView cage, TriangleView model,
-                         const std::optional<ModelVolume>& known_volume) {
+                         const std::optional<ModelVolume>& known_volume, const Progress& progress) {
   CageMetrics metrics;
   std::vector<char> used(cage.positions.size(), 0);
   for (const Triangle& t : cage.triangles) {
@@ -152,20 +158,23 @@ CageMetrics measure_cage(TriangleView cage, TriangleView model,
   metrics.vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
   metrics.faces = cage.triangles.size();
   metrics.volume = signed_volume(cage);
-  const ModelVolume volume = known_volume ? *known_volume : model_volume(model);
+  const ModelVolume volume = known_volume ? *known_volume : model_volume(model, progress);
   metrics.model_volume = volume.value;
   metrics.model_volume_method = volume.method;
   metrics.volume_ratio = volume.value > 0 ? metrics.volume / volume.value : 0;
-  measure_distances(cage, model, metrics);
-  metrics.webbing = SpaceBetween(model).share_inside(cage);
+  progress(0.4, "figures");
+  measure_distances(cage, model, metrics, progress);
+  progress(0.7, "figures");
+  metrics.webbing = SpaceBetween(model, progress).share_inside(cage);
   measure_shapes(cage, metrics);
   metrics.min_dihedral = min_dihedral(cage);
   return metrics;
 }
 
 CageMetrics measure_cage(const PolygonMesh& cage, TriangleView model,
-                         const std::optional<ModelVolume>& known_volume) {
-  CageMetrics metrics = measure_cage(TriangleView(to_triangle_mesh(cage)), model, known_volume);
+                         const std::optional<ModelVolume>& known_volume, const Progress& progress) {
+  CageMetrics metrics =
+      measure_cage(TriangleView(to_triangle_mesh(cage)), model, known_volume, progress);
   std::vector<std::size_t> valence(cage.positions.size(), 0);
   metrics.max_valence = 0;
   for (std::size_t f = 0; f < cage.face_count(); ++f) {

@@ -219,7 +219,7 @@ std::string_view name_of(VolumeMethod method) {
   return "unknown"; // no default above: the compiler points here when a method is added
 }
 
-ModelVolume model_volume(TriangleView model) {
+ModelVolume model_volume(TriangleView model, const Progress& progress) {
   const Box3 box = bounding_box(model);
   if (model.triangles.empty() || !(box.sizes().maxCoeff() > 0)) {
     return {};
@@ -228,9 +228,18 @@ ModelVolume model_volume(TriangleView model) {
   constexpr int needed_votes = 4;
   SampleGrid grid(model, box, longest);
   for (int axis = 0; axis < 3; ++axis) {
+    if (progress.cancelled()) {
+      return {};
+    }
     grid.vote_along(axis);
   }
+  if (progress.cancelled()) {
+    return {};
+  }
   grid.flood();
+  if (progress.cancelled()) {
+    return {};
+  }
   const SampleGrid::Counts counts = grid.counts(needed_votes);
   const bool is_closed = closure_of(weld(model).triangles) == Closure::oriented;
   const double few = noticed * static_cast<double>(counts.enclosed);

@@ -40,7 +40,7 @@ std::vector<Cell> lines() {
   return result;
 }
 
-Result<VoxelGrid> voxels_of(TriangleView model) {
+Result<VoxelGrid> voxels_of(TriangleView model, const Progress& progress) {
   const Box3 box = bounding_box(model.positions);
   OrientedBox frame;
   frame.center = box.center();
@@ -49,7 +49,7 @@ Result<VoxelGrid> voxels_of(TriangleView model) {
   const double along = 2 * frame.half.maxCoeff() / box.diagonal().norm() * voxels_along_diagonal;
   VoxelizeOptions options;
   options.resolution = std::max(2, static_cast<int>(std::lround(along)) + 1);
-  return voxelize(model, frame, options);
+  return voxelize(model, frame, options, progress.quiet());
 }
 
 /// The occupied voxels in clumps: in each block of the grid those that hang together. Ways lead
@@ -192,7 +192,8 @@ bool is_left(const Vec3& a, const Vec3& b, const Vec3& p) {
 
 class SpaceBetweenFinder {
 public:
-  explicit SpaceBetweenFinder(const VoxelGrid& grid) : grid_(grid) {}
+  SpaceBetweenFinder(const VoxelGrid& grid, const Progress& progress)
+      : grid_(grid), progress_(progress.quiet()) {}
 
   void run(SpaceBetween& space) const {
     space.corner_ = grid_.origin;
@@ -219,6 +220,9 @@ private:
     const Ways ways(grid_);
     std::vector<Crossing> crossings;
     for (const Cell& line : lines()) {
+      if (progress_.cancelled()) {
+        return {};
+      }
       find_crossings(line, ways, crossings);
     }
     const auto key = [](const Crossing& c) { return std::pair(c.from, c.voxel); };
@@ -232,7 +236,7 @@ private:
     }
     starts.push_back(crossings.size());
     std::vector<std::uint8_t> is_far(crossings.size(), 0);
-    parallel_for(0, starts.size() - 1, 1, [&](std::size_t s) {
+    parallel_for(0, starts.size() - 1, 1, progress_, [&](std::size_t s) {
       double reach = 0;
       for (std::size_t i = starts[s]; i < starts[s + 1]; ++i) {
         reach = std::max(reach, least_way(crossings[i]));
@@ -303,16 +307,17 @@ private:
   }
 
   const VoxelGrid& grid_;
+  Progress progress_;
 };
 
-SpaceBetween::SpaceBetween(TriangleView model) {
+SpaceBetween::SpaceBetween(TriangleView model, const Progress& progress) {
   const bool is_finite = std::all_of(model.positions.begin(), model.positions.end(),
                                      [](const Vec3& p) { return p.allFinite(); });
   if (model.triangles.empty() || !is_finite || !(diagonal(model.positions) > 0)) {
     return;
   }
-  if (const Result<VoxelGrid> grid = voxels_of(model)) {
-    SpaceBetweenFinder(*grid).run(*this);
+  if (const Result<VoxelGrid> grid = voxels_of(model, progress)) {
+    SpaceBetweenFinder(*grid, progress).run(*this);
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include "mesh/shapes.h"
 #include <cagewright/cage/option_table.h>
-#include <cagewright/core/steady_report.h>
 #include <cagewright/validate/validate_cage.h>
 
 #include <gtest/gtest.h>
@@ -110,69 +109,6 @@ TEST(Generate, RefusesWhatIsOutOfRange) {
     ASSERT_FALSE(made);
     EXPECT_EQ(made.error().code, ErrorCode::invalid_option) << made.error().message;
     EXPECT_EQ(made.error().message.find("--"), std::string::npos) << made.error().message;
-  }
-}
-
-// Every mode there is, on a model in two pieces that is its own mirror image.
-std::vector<GenerateOptions> every_mode() {
-  std::vector<GenerateOptions> modes;
-  for (const Method method : {Method::envelope, Method::boxes, Method::boxes_improved}) {
-    for (const bool quads : {false, true}) {
-      modes.push_back(quick(40));
-      modes.back().method = method;
-      modes.back().quads = quads;
-    }
-  }
-  modes.push_back(quick(40));
-  modes.back().pieces = Pieces::apart;
-  modes.push_back(quick(40));
-  modes.back().symmetry = Symmetry::off;
-  modes.push_back(quick(0));
-  modes.back().max_gap = 0.15;
-  modes.push_back(quick(0));
-  modes.back().faces = 40;
-  modes.back().quads = true;
-  return modes;
-}
-
-TEST(Generate, ReportsProgressThatNeverFallsAndReachesTheEndInEveryMode) {
-  TriangleMesh model = make_icosphere(2);
-  TriangleMesh other = model;
-  for (Vec3& p : other.positions) {
-    p += Vec3(3, 0, 0);
-  }
-  model = joined(model, other);
-  for (const GenerateOptions& options : every_mode()) {
-    double last = 0;
-    bool falls = false;
-    const Progress progress({}, steady([&](double fraction, std::string_view) {
-                              falls = falls || fraction < last;
-                              last = fraction;
-                            }));
-    const Result<GeneratedCage> made = generate(model, options, progress);
-    ASSERT_TRUE(made) << made.error().message;
-    EXPECT_FALSE(falls);
-    EXPECT_EQ(last, 1);
-  }
-}
-
-TEST(Generate, StopsWhereverItIsAskedToInEveryMode) {
-  const TriangleMesh model = make_torus(0.3, 16, 8);
-  for (const GenerateOptions& options : every_mode()) {
-    for (const int reports : {1, 12, 40}) { // after so many
-      StopFlag stop;
-      int seen = 0;
-      const Progress progress(stop, [&](double /*fraction*/, std::string_view) {
-        if (++seen == reports) {
-          stop.request_stop();
-        }
-      });
-      const Result<GeneratedCage> made = generate(model, options, progress);
-      if (!made) {
-        EXPECT_EQ(made.error().code, ErrorCode::cancelled) << made.error().message;
-      }
-      EXPECT_TRUE(!made || seen <= reports + 10) << "it went on";
-    }
   }
 }
 

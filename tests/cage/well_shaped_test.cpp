@@ -32,7 +32,8 @@ TEST(ImproveWellShaped, GivesRounderFacesWhereTheyAreThinAndTheSameElsewhere) {
     options.shape = shape;
     const Result<Improved> once = improve(start, model, options);
     const GenerateOptions none;
-    const Ground ground(model, none, std::nullopt);
+    EngineRuns runs;
+    const Ground ground(model, none, std::nullopt, runs);
     const Result<Triangles> tried = improve_well_shaped(ground, start, options);
     ASSERT_TRUE(once && tried);
     const Improved* made = &tried->improved;

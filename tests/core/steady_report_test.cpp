@@ -9,7 +9,7 @@ namespace {
 
 std::vector<double> shown(const std::vector<double>& reported) {
   std::vector<double> result;
-  const Progress::Report report =
+  const ProgressReport report =
       steady([&](double fraction, std::string_view) { result.push_back(fraction); });
   for (const double fraction : reported) {
     report(fraction, "");

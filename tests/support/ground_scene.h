@@ -14,6 +14,7 @@ struct GroundScene {
   TriangleMesh model = ellipsoid({0, 0, 0}, {1, 0.8, 0.6});
   TriangleMesh start = ellipsoid({0, 0, 0}, {1.15, 0.95, 0.75});
   GenerateOptions options = unrefined();
+  EngineRuns runs;
 
 private:
   static GenerateOptions unrefined() {
@@ -28,7 +29,7 @@ private:
 /// cage, or of every one of quads, that it is so many diagonals away.
 class NotingGround : public Ground {
 public:
-  explicit NotingGround(const GroundScene& scene) : Ground(scene.model, scene.options, {}) {}
+  explicit NotingGround(GroundScene& scene) : Ground(scene.model, scene.options, {}, scene.runs) {}
 
   std::optional<double> all_are_at;
   std::optional<double> quads_are_at;

@@ -1,14 +1,17 @@
 /// \file
-/// Progress that never falls and never stands still.
+/// Reports of progress that never fall and never stand still.
 #pragma once
 
-#include <cagewright/core/progress.h>
-
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <string_view>
 #include <utility>
 
 namespace cagewright {
+
+/// A fraction of the whole, and the name of the step under way.
+using ProgressReport = std::function<void(double fraction, std::string_view step)>;
 
 /// A report of what is left rather than of what was reckoned with.
 ///
@@ -17,9 +20,10 @@ namespace cagewright {
 /// it neither falls nor waits until the step is again where it was. Where nothing falls the
 /// fractions are those that were reported; 1 stays 1.
 ///
-/// \param report  called with fractions that never fall, from 0 to 1
-inline Progress::Report steady(Progress::Report report) {
+/// \param report  called with fractions that never fall, from 0 to 1, by one thread at a time
+inline ProgressReport steady(ProgressReport report) {
   struct Pass {
+    std::mutex mutex;
     double from = 0;  // the fraction that the pass began at,
     double shown = 0; // and what was shown then
     double last = 0;  // reported
@@ -27,8 +31,10 @@ inline Progress::Report steady(Progress::Report report) {
   };
   return [report = std::move(report), pass = std::make_shared<Pass>()](double fraction,
                                                                        std::string_view step) {
+    const std::lock_guard lock(pass->mutex);
     if (fraction < pass->last) {
-      *pass = {fraction, pass->least, fraction, pass->least};
+      pass->from = fraction;
+      pass->shown = pass->least;
     }
     pass->last = fraction;
     const double left = 1 - pass->from;

@@ -2,6 +2,7 @@
 /// How good a cage is, in numbers.
 #pragma once
 
+#include <cagewright/core/progress.h>
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/mesh/triangle_mesh.h>
 #include <cagewright/validate/model_volume.h>
@@ -40,13 +41,16 @@ struct CageMetrics {
 /// \param cage          C vertices, F triangles; it need not be valid
 /// \param model         V vertices, T triangles; without triangles all distances are 0
 /// \param model_volume  if it is known, to save its computation
+/// \returns what was measured before it was to stop, if it was
 /// Cost: O((T + F) log(T + F)) time; parallel, the same on any number of threads.
 CageMetrics measure_cage(TriangleView cage, TriangleView model,
-                         const std::optional<ModelVolume>& model_volume = {});
+                         const std::optional<ModelVolume>& model_volume = {},
+                         const Progress& progress = {});
 
 /// The same of polygons: of the triangles that to_triangle_mesh() cuts them into, but the valence
 /// is that of the polygons.
 CageMetrics measure_cage(const PolygonMesh& cage, TriangleView model,
-                         const std::optional<ModelVolume>& model_volume = {});
+                         const std::optional<ModelVolume>& model_volume = {},
+                         const Progress& progress = {});
 
 } // namespace cagewright

@@ -2,6 +2,7 @@
 /// The volume of a model that may be open, inverted or dirty.
 #pragma once
 
+#include <cagewright/core/progress.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
 #include <string_view>
@@ -34,7 +35,8 @@ struct ModelVolume {
 /// whole. The error is below about 1 % for a compact model; flat sheets have none, bent ones what
 /// they half surround.
 ///
+/// None if it is to stop.
 /// Cost: O(T) and a million samples.
-ModelVolume model_volume(TriangleView model);
+ModelVolume model_volume(TriangleView model, const Progress& progress = {});
 
 } // namespace cagewright

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cagewright/core/geometry.h>
+#include <cagewright/core/progress.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>
@@ -28,8 +29,9 @@ public:
 
   /// None if the model cannot be made of voxels: without triangles, without extent, not finite.
   ///
+  /// None, too, if it is to stop.
   /// Cost: O(T + N) for T triangles and N voxels, some 20 ms, and about as much for the ways.
-  explicit SpaceBetween(TriangleView model);
+  explicit SpaceBetween(TriangleView model, const Progress& progress = {});
 
   [[nodiscard]] std::size_t count() const { return count_; } ///< of the points
   [[nodiscard]] double voxel() const { return size_; }       ///< length of their voxels' edges
