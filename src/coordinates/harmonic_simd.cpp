@@ -689,6 +689,8 @@ private:
 };
 
 constexpr double default_accuracy = 2e-3;
+constexpr std::size_t usual_unknowns = 4500; // some seconds
+constexpr std::size_t patient_unknowns = 8000;
 constexpr double useless = 0.5; // an error of weights as large as they are
 
 /// Points a hundredth of the diagonal below the cage, or farther, where a model
@@ -780,11 +782,14 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
   if (!green) {
     return green.error();
   }
+  const std::size_t most = options.unknowns > 0   ? options.unknowns
+                           : options.accuracy > 0 ? patient_unknowns
+                                                  : usual_unknowns;
   const auto unknowns_at = [&](std::size_t level) {
     return cut_levels[level].unknowns() * surface->faces.size();
   };
   const auto fits = [&](std::size_t level) {
-    return unknowns_at(level) <= options.unknowns &&
+    return unknowns_at(level) <= most &&
            PositiveSystem::bytes(unknowns_at(level)) <= memory_allowed();
   };
   // The first is compared with the one before it.

@@ -16,8 +16,9 @@ namespace cagewright {
 struct HarmonicOptions {
   QuadTreatment quads = QuadTreatment::center;
   OutsideTreatment outside = OutsideTreatment::error; ///< or `rest`
-  double accuracy = 0;         ///< of weights inside (error_estimate()); 0: 2e-3
-  std::size_t unknowns = 6000; ///< at most: where they do not suffice the error stays larger
+  double accuracy = 0; ///< of weights inside (error_estimate()); 0: 2e-3
+  /// Where they do not suffice the error stays larger; 0: 4500, or 8000 if an accuracy is given.
+  std::size_t unknowns = 0;
 };
 
 /// Joshi, Meyer, DeRose, Green, Sanocki, "Harmonic Coordinates for Character Articulation",
