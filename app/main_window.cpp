@@ -93,6 +93,15 @@ void share_height(QDockWidget* first, int first_height, QDockWidget* second, int
 // On screens that are lower, in logical pixels, three panels one above the other are too many.
 constexpr int low_screen = 800;
 
+QSize pleasant_size() {
+  return {1440, 900};
+}
+
+/// With a frame round it.
+bool fits(const QSize& window, const QSize& available) {
+  return window.width() < available.width() && window.height() < available.height();
+}
+
 QString file_of(const QDropEvent& event) {
   const QList<QUrl> urls = event.mimeData()->urls();
   return urls.isEmpty() ? QString() : urls.first().toLocalFile();
@@ -104,14 +113,15 @@ MainWindow::MainWindow(const QDir& recovery_folder, QWidget* parent)
     : QMainWindow(parent), preferences_(Preferences::load()), recovery_(session_, recovery_folder) {
   setAcceptDrops(true);
   setDockNestingEnabled(true);
-  resize(QSize(1440, 900).boundedTo(screen()->availableSize())); // until the user says otherwise
+  resize(pleasant_size().boundedTo(screen()->availableSize())); // until the user says otherwise
   make_panels();
   make_status_bar();
   make_menus();
   connect_session();
   first_layout_ = saveState();
   const QSettings settings;
-  restoreGeometry(settings.value("window/geometry").toByteArray());
+  const bool placed = restoreGeometry(settings.value("window/geometry").toByteArray());
+  fills_screen_ = !placed && !fits(pleasant_size(), screen()->availableSize());
   restoreState(settings.value("window/state").toByteArray());
   fold_panels();
   session_.set_settings(generate_settings_from_json(settings.value("generate").toJsonObject()));
@@ -194,6 +204,11 @@ void MainWindow::make_panels() {
   QDockWidget* history =
       dock(this, "dock_history", tr("History"), new HistoryPanel(session_.editor().undo_stack()),
            Qt::RightDockWidgetArea, false);
+  // Dock tabs are made when they are needed: their names are read whole.
+  setStyleSheet(
+      "QMainWindow > QTabBar::tab { padding: 4px 7px; border: none; border-top: 2px solid "
+      "transparent; } "
+      "QMainWindow > QTabBar::tab:selected { border-top-color: palette(highlight); }");
   tabifyDockWidget(layers, poses);
   tabifyDockWidget(poses, history);
   layers->raise();
@@ -311,6 +326,12 @@ void MainWindow::connect_session() {
   connect(&document, &Document::timeLineChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::pinsChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::densityChanged, this, &MainWindow::update_actions);
+  // What was refused is past as soon as something else is shown.
+  connect(&document, &Document::modelChanged, notice_, &QWidget::hide);
+  connect(&document, &Document::cageChanged, notice_, &QWidget::hide);
+  connect(&document, &Document::modeChanged, notice_, &QWidget::hide);
+  connect(&document, &Document::selectionChanged, notice_, &QWidget::hide);
+  connect(&document, &Document::toolsChanged, notice_, &QWidget::hide);
   connect(&document, &Document::posesChanged, this, &MainWindow::unfold_panels);
   connect(&document, &Document::timeLineChanged, this, &MainWindow::unfold_panels);
   connect(&document, &Document::stagesChanged, this, &MainWindow::unfold_panels);
@@ -485,6 +506,14 @@ bool MainWindow::may_discard() {
   return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
 }
 
+void MainWindow::showEvent(QShowEvent* event) {
+  QMainWindow::showEvent(event);
+  if (std::exchange(fills_screen_, false)) {
+    // Later: of a window that is not there yet, managers of windows forget it.
+    QTimer::singleShot(0, this, &QWidget::showMaximized);
+  }
+}
+
 void MainWindow::closeEvent(QCloseEvent* event) {
   if (!may_discard()) {
     event->ignore();
@@ -538,6 +567,9 @@ bool MainWindow::is_for_view(const QWidget* focus, const QKeyEvent& key) const {
   if (key.key() == Qt::Key_Space && qobject_cast<const QAbstractButton*>(focus)) {
     return false; // reached by Tab: clicks do not give buttons the focus
   }
+  if (key.key() == Qt::Key_Tab) { // walks from field to field for who came there by it
+    return clicked_focus_ && modifiers == Qt::NoModifier;
+  }
   const bool digit = key.key() >= Qt::Key_0 && key.key() <= Qt::Key_9;
   return letter || sign || digit || key.key() == Qt::Key_Escape || key.key() == Qt::Key_Delete ||
          key.key() == Qt::Key_Plus || key.key() == Qt::Key_Minus || key.key() == Qt::Key_Equal;
@@ -560,6 +592,11 @@ bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
     }
     break;
   }
+  case QEvent::FocusIn:
+    if (watched != viewport_ && watched->isWidgetType()) {
+      clicked_focus_ = static_cast<QFocusEvent*>(event)->reason() == Qt::MouseFocusReason;
+    }
+    break;
   case QEvent::Enter:
   case QEvent::MouseMove:
     if (watched == viewport_ && isActiveWindow() && !viewport_->hasFocus() &&
@@ -598,7 +635,7 @@ void MainWindow::show_notice(const QString& text) {
   if (text.isEmpty()) {
     return;
   }
-  notice_->setText(text.left(1).toUpper() + text.mid(1));
+  notice_->setText(as_sentence(text));
   notice_->setWordWrap(notice_->fontMetrics().horizontalAdvance(text) > viewport_->width() - 80);
   notice_->setMaximumWidth(viewport_->width() - 40);
   notice_->adjustSize();

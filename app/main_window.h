@@ -55,6 +55,7 @@ public:
 
 protected:
   void closeEvent(QCloseEvent* event) override;
+  void showEvent(QShowEvent* event) override;
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
   bool eventFilter(QObject* watched, QEvent* event) override;
@@ -148,6 +149,8 @@ private:
   QToolButton* cancel_ = nullptr;
   QByteArray first_layout_;
   bool passes_on_key_ = false;                        ///< to the view
+  bool fills_screen_ = false;                         ///< as soon as it is shown
+  bool clicked_focus_ = false;                        ///< it came by a click, not by keys
   std::map<QString, QList<QKeySequence>> usual_keys_; ///< of commands, in the usual key map
   QByteArray layout_before_full_view_;
   bool guide_before_full_view_ = false;

@@ -510,6 +510,7 @@ QList<QAction*> MainWindow::commands() const {
           add_all(action->menu());
         }
       } else if (!action->isSeparator() && !action->text().isEmpty() && !found.contains(action)) {
+        action->setProperty(menu_property, menu->title().remove('&'));
         found.append(action);
       }
     }
@@ -560,7 +561,7 @@ void MainWindow::show_keys() {
       keys.append(key.toString(QKeySequence::NativeText));
     }
     if (!keys.isEmpty()) {
-      text += row(keys.join(", "), plain_text(*command));
+      text += row(keys.join(", "), full_name(*command));
     }
   }
   text += "</table>";

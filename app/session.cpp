@@ -57,6 +57,10 @@ SharedPositions shared(std::span<const Vec3> positions) {
 
 } // namespace
 
+QString as_sentence(const QString& text) {
+  return text.left(1).toUpper() + text.mid(1);
+}
+
 fs::path with_suffix(const fs::path& path, const QString& suffix) {
   QString clean = suffix;
   clean.replace(QRegularExpression("[^\\w.+-]"), "_");
@@ -69,13 +73,17 @@ Session::Session(QObject* parent)
   connect(&jobs_, &JobRunner::failed, this, &Session::failed);
   connect(&jobs_, &JobRunner::cancelled, this,
           [this](const QString& title) { Q_EMIT message(tr("%1: cancelled").arg(title)); });
-  connect(&editor_, &Editor::message, this, &Session::message);
+  connect(&editor_, &Editor::message, this,
+          [this](const QString& text) { Q_EMIT message(as_sentence(text)); });
   connect(&jobs_, &JobRunner::finished, this, [this] {
     if (waiting_ && !jobs_.busy()) {
       Waiting next = *std::exchange(waiting_, std::nullopt);
       start(next.title, std::move(next.work));
+    } else {
+      show_bound_kind();
     }
   });
+  connect(&document_, &Document::modeChanged, this, &Session::show_bound_kind);
   connect(&document_, &Document::densityChanged, this, [this] {
     // What was painted is meant to be used.
     const bool painted = document_.state().density != nullptr;
@@ -94,6 +102,47 @@ Session::~Session() = default;
 void Session::set_settings(const GenerateSettings& settings) {
   settings_ = settings;
   Q_EMIT settingsChanged();
+  const auto& binding = document_.state().binding;
+  if (binding && coordinate_settings(settings_).kind().name != binding->settings().kind().name) {
+    bind_anew();
+  }
+}
+
+/// By other coordinates: the cage stays as it is.
+void Session::bind_anew() {
+  const State& state = document_.state();
+  const bool started = start(
+      tr("Bind"),
+      [this, model = document_.model(), rest = state.rest, before = state.binding,
+       kind = coordinate_settings(settings_)](const Progress& progress) -> Result<Job::Apply> {
+        Result<std::shared_ptr<const Binding>> binding = bind_model(*model, *rest, kind, progress);
+        if (!binding) {
+          return binding.error();
+        }
+        return Job::Apply([this, before, binding = *binding] {
+          if (document_.state().binding == before) {
+            editor_.bind_anew(binding);
+            Q_EMIT message(tr("The model follows by other coordinates now"));
+          }
+        });
+      });
+  if (!started) {
+    show_bound_kind();
+  }
+}
+
+/// What is bound says by which kind: after undo, and where another was refused.
+void Session::show_bound_kind() {
+  const auto& binding = document_.state().binding;
+  if (!binding || jobs_.busy()) {
+    return;
+  }
+  const std::string_view name = binding->settings().kind().name;
+  const QString bound = QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size()));
+  if (settings_.coordinates != bound) {
+    settings_.coordinates = bound;
+    Q_EMIT settingsChanged();
+  }
 }
 
 bool Session::start(const QString& title, Job::Work work, Kind kind) {
@@ -135,8 +184,8 @@ bool Session::may_replace_cage(const QString& title, const QString& go_on) {
   }
   return !ask_ || lost.empty() ||
          ask_({title,
-               tr("Another cage has other vertices: what fits the present one goes with it (%1). "
-                  "Undo brings it back.")
+               tr("Another cage has other vertices. What was made with the present one does not "
+                  "fit it and is removed: %1. Undo brings it back.")
                    .arg(lost.join(tr(", "))),
                go_on});
 }
@@ -288,7 +337,8 @@ void Session::open_project(const fs::path& path, const fs::path& model_path, boo
         }
         if (project.bound && model) {
           Result<std::shared_ptr<const Binding>> bound =
-              bind_model(*model, *project.state.rest, progress.part(0.4, 1));
+              bind_model(*model, *project.state.rest, coordinate_settings(project.settings),
+                         progress.part(0.4, 1));
           if (!bound) {
             return bound.error();
           }
@@ -401,8 +451,8 @@ void Session::bind(Doubts doubts) {
                      check.report->valid() && !checker_.busy();
   const bool judges = doubts == Doubts::tell && !known;
   start(tr("Bind"),
-        [this, judges, model = document_.model(), rest,
-         cage = document_.state().cage](const Progress& whole) -> Result<Job::Apply> {
+        [this, judges, model = document_.model(), rest, cage = document_.state().cage,
+         kind = coordinate_settings(settings_)](const Progress& whole) -> Result<Job::Apply> {
           if (judges) {
             Result<JudgedCage> judged = judge_cage(*rest, model.get(), whole.part(0, 0.3));
             if (!judged) {
@@ -421,7 +471,8 @@ void Session::bind(Doubts doubts) {
             }
           }
           const Progress progress = whole.part(judges ? 0.3 : 0, 1);
-          Result<std::shared_ptr<const Binding>> binding = bind_model(*model, *rest, progress);
+          Result<std::shared_ptr<const Binding>> binding =
+              bind_model(*model, *rest, kind, progress);
           if (!binding) {
             return binding.error();
           }
@@ -617,9 +668,10 @@ void Session::start_export(const QString& title, std::vector<fs::path> paths,
   }
   start(
       title,
-      [this, outputs, model = document_.model(),
-       rest = document_.state().rest](const Progress& progress) -> Result<Job::Apply> {
-        Result<std::vector<FileNote>> notes = export_models(*model, *rest, outputs, progress);
+      [this, outputs, model = document_.model(), rest = document_.state().rest,
+       binding = document_.state().binding](const Progress& progress) -> Result<Job::Apply> {
+        Result<std::vector<FileNote>> notes =
+            export_models(*model, *rest, binding->settings(), outputs, progress);
         if (!notes) {
           return notes.error();
         }
@@ -683,8 +735,11 @@ void Session::export_animation(const fs::path& path) {
   start(
       title,
       [this, path, model = document_.model(), rest = document_.state().rest,
+       binding = document_.state().binding,
        line = document_.state().time_line](const Progress& progress) -> Result<Job::Apply> {
-        if (Status s = app::export_animation(*model, *rest, line, path, progress); !s) {
+        if (Status s =
+                app::export_animation(*model, *rest, binding->settings(), line, path, progress);
+            !s) {
           return s.error();
         }
         return Job::Apply([this, path] { Q_EMIT message(tr("Wrote %1").arg(name_of(path))); });
@@ -701,9 +756,9 @@ void Session::export_weights(const fs::path& path) {
       document_.mode() == Mode::deform ? document_.cage_rest() : document_.cage();
   start(
       tr("Export Weights"),
-      [this, path, cage,
+      [this, path, cage, kind = coordinate_settings(settings_),
        model = document_.model()](const Progress& progress) -> Result<Job::Apply> {
-        if (Status s = app::export_weights(*model, cage, path, progress); !s) {
+        if (Status s = app::export_weights(*model, cage, kind, path, progress); !s) {
           return s.error();
         }
         return Job::Apply([this, path] { Q_EMIT message(tr("Wrote %1").arg(name_of(path))); });

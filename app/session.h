@@ -147,6 +147,8 @@ private:
   /// Whether the cage can be changed as a whole; says why not.
   bool can_repair(const QString& title);
   void go_on(Then then);
+  void bind_anew();
+  void show_bound_kind();
 
   Document document_;
   Editor editor_;
@@ -169,5 +171,8 @@ private:
 /// PATH with something between stem and extension: "a/b.obj", "-01" gives "a/b-01.obj". What files
 /// cannot be named is replaced.
 std::filesystem::path with_suffix(const std::filesystem::path& path, const QString& suffix);
+
+/// Refusals come as parts of sentences, in lower case.
+QString as_sentence(const QString& text);
 
 } // namespace cagewright::app

@@ -67,10 +67,19 @@ void apply_theme(QApplication& application, Theme theme) {
       "QToolTip { padding: 3px; } "
       "QDockWidget { font-weight: bold; } QDockWidget > QWidget { font-weight: normal; } "
       // What is on is seen at a glance, in light and dark.
-      "QToolBar QToolButton { padding: 3px 6px; border-radius: 3px; border: none; } "
+      "QToolBar QToolButton { padding: 3px 4px; border-radius: 3px; border: none; } "
       "QToolBar QToolButton:hover { background: rgba(128, 128, 128, 70); } "
-      "QToolBar QToolButton:checked { background: palette(highlight); "
-      "color: palette(highlighted-text); }");
+      "QToolButton#advanced:checked { background: none; color: palette(button-text); } "
+      "QToolButton:checked { background: palette(highlight); color: palette(highlighted-text); "
+      "border-radius: 3px; }");
+  // Boxes to be checked are seen on dark panels, too.
+  QPalette boxes = QApplication::palette();
+  if (theme == Theme::dark) {
+    boxes.setColor(QPalette::Base, QColor("#4a4d53"));
+  }
+  for (const char* name : {"QCheckBox", "QRadioButton"}) {
+    QApplication::setPalette(boxes, name);
+  }
 }
 
 } // namespace cagewright::app

@@ -146,13 +146,16 @@ void Editor::hide_faces(std::vector<Index> faces, const QString& text) {
 
 void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
                           std::shared_ptr<const BoxDecomposition> stages, const QString& text) {
-  tell_of_lost_poses();
+  const QString lost = lost_poses();
   State state = without_cage();
   state.selection.mode = document_.selection().mode;
   state.stages = stages ? std::move(stages) : document_.stages();
   state.cage = std::make_shared<const std::vector<Vec3>>(cage->positions);
   state.rest = std::move(cage);
   change(std::move(state), text);
+  if (!lost.isEmpty()) {
+    Q_EMIT message(lost);
+  }
 }
 
 State Editor::without_cage() const {
@@ -161,24 +164,28 @@ State Editor::without_cage() const {
   return state;
 }
 
-void Editor::tell_of_lost_poses() {
+QString Editor::lost_poses() const {
   const State& state = document_.state();
-  if (!state.poses.empty() || !state.time_line.keys.empty()) {
-    Q_EMIT message(
-        tr("%n poses and keyframes fitted the cage before, and went with it; undo brings "
-           "them back",
-           nullptr, static_cast<int>(state.poses.size() + state.time_line.keys.size())));
-  }
+  const std::size_t lost = state.poses.size() + state.time_line.keys.size();
+  return lost == 0 ? QString()
+         : lost == 1
+             ? tr("What was kept of the cage before does not fit this one: undo brings it back")
+             : tr("%1 poses and keyframes of the cage before do not fit this one: undo brings "
+                  "them back")
+                   .arg(lost);
 }
 
 void Editor::edit_topology(PolygonMesh cage, Selection selection, const QString& text) {
-  tell_of_lost_poses();
+  const QString lost = lost_poses();
   State state = without_cage();
   state.selection = std::move(selection);
   state.stages = document_.stages();
   state.cage = std::make_shared<const std::vector<Vec3>>(cage.positions);
   state.rest = std::make_shared<const PolygonMesh>(std::move(cage));
   change(std::move(state), text);
+  if (!lost.isEmpty()) {
+    Q_EMIT message(lost);
+  }
 }
 
 void Editor::adjust_cage(std::shared_ptr<const PolygonMesh> cage,
@@ -218,21 +225,34 @@ void Editor::bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const 
   change(std::move(state), tr("Bind"));
 }
 
+void Editor::bind_anew(std::shared_ptr<const Binding> binding) {
+  State state = document_.state();
+  const Shown shown = document_.shown();
+  state.pins.clear(); // they have weights of the kind before
+  state.binding = std::move(binding);
+  change(std::move(state), tr("Other Coordinates"));
+  document_.set_shown(shown);
+}
+
 void Editor::refine() {
   State state = document_.state();
   if (!state.binding) {
     return;
   }
+  QString kept;
   if (deformation_is_unkept()) {
     const QString name = free_pose_name(tr("Last pose"));
     state.poses.push_back({name, state.cage, 0});
-    Q_EMIT message(tr("The deformation is kept as the pose \"%1\"").arg(name));
+    kept = tr("The deformation is kept as the pose \"%1\"").arg(name);
   }
   state.binding.reset();
   state.pins.clear();
   take_only(no_pose, state.poses);
   state.cage = std::make_shared<const std::vector<Vec3>>(state.rest->positions);
   change(std::move(state), tr("Refine Cage"));
+  if (!kept.isEmpty()) {
+    Q_EMIT message(kept);
+  }
 }
 
 bool Editor::deformation_is_unkept() const {

@@ -79,6 +79,8 @@ public:
   /// To deform mode: `rest` is the cage that the binding was made for, with the topology of the
   /// present one. Poses and keyframes keep what they move from the rest, wherever that is now.
   void bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const PolygonMesh> rest);
+  /// The same cage and model, bound by another kind of coordinates: the pose stays.
+  void bind_anew(std::shared_ptr<const Binding> binding);
   /// Back to refine mode, with the cage at rest. Poses and keyframes stay while the topology does;
   /// a deformation that is none of them becomes the pose "Last pose".
   void refine();
@@ -120,7 +122,8 @@ Q_SIGNALS:
   void message(const QString& text);
 
 private:
-  void tell_of_lost_poses();
+  /// What is to be said of poses and keyframes when another cage takes their place, or nothing.
+  [[nodiscard]] QString lost_poses() const;
   /// What stays when the cage becomes another.
   [[nodiscard]] State without_cage() const;
   [[nodiscard]] QString free_pose_name(const QString& name) const;

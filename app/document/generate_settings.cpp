@@ -111,7 +111,43 @@ std::vector<GenerateOption> density_options() {
   };
 }
 
+QString name_of(const CoordinateKind& kind) {
+  return QString::fromUtf8(kind.name.data(), static_cast<qsizetype>(kind.name.size()));
+}
+
+GenerateOption coordinates_option() {
+  GenerateOption::Choice choice{
+      {},
+      {},
+      [](const GenerateSettings& s) {
+        const auto kinds = coordinate_kinds();
+        const auto at = std::ranges::find_if(
+            kinds, [&](const CoordinateKind* k) { return name_of(*k) == s.coordinates; });
+        return at == kinds.end() ? 0 : static_cast<int>(at - kinds.begin());
+      },
+      [](GenerateSettings& s, int i) {
+        s.coordinates = name_of(*coordinate_kinds()[static_cast<std::size_t>(i)]);
+      }};
+  QString help = text("By which coordinates the model follows the cage. While it is bound, another "
+                      "kind binds it anew and keeps the pose.");
+  for (const CoordinateKind* kind : coordinate_kinds()) {
+    QString label = name_of(*kind).replace('_', ' ');
+    label[0] = label[0].toUpper();
+    choice.keys.append(name_of(*kind));
+    choice.labels.append(label);
+    help += QString("\n%1: %2.").arg(label, text(kind->idea));
+  }
+  return {"coordinates", text("Follows by"),
+          help,          Group::binding,
+          choice,        [](const GenerateSettings&) { return true; }};
+}
+
 } // namespace
+
+CoordinateSettings coordinate_settings(const GenerateSettings& settings) {
+  const CoordinateKind* kind = find_coordinate_kind(settings.coordinates.toStdString());
+  return kind != nullptr ? CoordinateSettings(*kind) : CoordinateSettings();
+}
 
 const std::vector<GenerateOption>& generate_options() {
   static const std::vector<GenerateOption> options = [] {
@@ -126,6 +162,7 @@ const std::vector<GenerateOption>& generate_options() {
     }
     const std::vector<GenerateOption> density = density_options();
     all.insert(all.end(), density.begin(), density.end());
+    all.push_back(coordinates_option());
     return all;
   }();
   return options;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cagewright/cage/option_table.h>
+#include <cagewright/coordinates/kinds.h>
 
 #include <QJsonObject>
 #include <QString>
@@ -25,6 +26,10 @@ enum class DensitySource {
 
 struct GenerateSettings {
   DensitySource density = DensitySource::even;
+  /// The kind of coordinates by which the model will follow the cage: CoordinateKind::name.
+  QString coordinates =
+      QString::fromUtf8(coordinate_kinds().front()->name.data(),
+                        static_cast<qsizetype>(coordinate_kinds().front()->name.size()));
   QString density_file; ///< one number for each vertex of the model: see read_vertex_weights()
   GenerateOptions options;
 };
@@ -59,7 +64,7 @@ struct GenerateOption {
     std::function<QString&(GenerateSettings&)> value;
   };
 
-  enum class Group { basic, budget, envelope, boxes };
+  enum class Group { basic, budget, envelope, boxes, binding };
 
   QString key; ///< as on the command line, without dashes
   QString label;
@@ -72,6 +77,9 @@ struct GenerateOption {
 
 /// All of them, in the order in which they are shown.
 const std::vector<GenerateOption>& generate_options();
+
+/// The kind that the settings name.
+CoordinateSettings coordinate_settings(const GenerateSettings& settings);
 
 QJsonObject to_json(const GenerateSettings& settings);
 /// What is missing, of the wrong kind or out of range keeps its default.

@@ -52,6 +52,16 @@ ModelPart part_of(PolygonMesh mesh, ModelOrigin origin) {
   return {std::move(origin), std::move(mesh), 0, count};
 }
 
+std::shared_ptr<const Dress> dress_of(const Model& model, const Triangulation& cut) {
+  std::vector<DressedPart> parts;
+  for (const ModelPart& part : model.parts) {
+    parts.push_back({part.origin.dress.get(), &model.mesh_of(part), part.first});
+  }
+  return std::ranges::any_of(parts, [](const DressedPart& p) { return p.dress != nullptr; })
+             ? make_dress(parts, cut, model.mesh.colors, model.coarse)
+             : nullptr;
+}
+
 Result<std::shared_ptr<const Model>> prepared(std::vector<ModelPart> parts,
                                               const Progress& progress) {
   auto model = std::make_shared<Model>();
@@ -67,10 +77,12 @@ Result<std::shared_ptr<const Model>> prepared(std::vector<ModelPart> parts,
     return Error{ErrorCode::unfit_model, model->path.string() + ": the model has no extent"};
   }
   progress(0, "cutting faces into triangles");
-  model->triangles = triangulate(model->mesh).triangles;
+  Triangulation cut = triangulate(model->mesh);
+  model->triangles = cut.triangles;
   if (model->triangles.size() > large) {
     model->coarse = coarse_triangles(model->view(), drawn_at_once);
   }
+  model->dress = dress_of(*model, cut);
   progress(0.2, "normals");
   const NormalField normals(model->mesh, smooth_normals(model->mesh));
   model->normals.assign(normals.normals().begin(), normals.normals().end());
@@ -110,7 +122,13 @@ Result<std::shared_ptr<const Model>> open_models(const std::vector<std::filesyst
     if (progress.cancelled()) {
       return Error::cancelled();
     }
-    ModelOrigin origin{path, *std::move(normals), {file->notes().begin(), file->notes().end()}};
+    ModelOrigin origin{
+        path, *std::move(normals), {file->notes().begin(), file->notes().end()}, nullptr};
+    if (Result<MeshAttributes> attributes = file->attributes()) {
+      if (std::optional<FileDress> dress = read_dress(path, *std::move(attributes))) {
+        origin.dress = std::make_shared<const FileDress>(*std::move(dress));
+      }
+    }
     parts.push_back(part_of(std::move(*file).take_mesh(), std::move(origin)));
   }
   return prepared(std::move(parts), progress.part(0.5, 1));

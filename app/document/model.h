@@ -2,6 +2,7 @@
 /// A model as it was opened: never changed, shared by the document and the jobs.
 #pragma once
 
+#include "app/document/dress.h"
 #include "spatial/bvh.h"
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
@@ -20,6 +21,7 @@ struct ModelOrigin {
   std::filesystem::path path;
   FileNormals normals;         ///< as stored in the file, if any
   std::vector<FileNote> notes; ///< what its reader has taken otherwise than it stands there
+  std::shared_ptr<const FileDress> dress; ///< materials and textures, if it has any
 };
 
 /// One of the files that a model is made of.
@@ -31,18 +33,19 @@ struct ModelPart {
 };
 
 struct Model {
-  PolygonMesh mesh;                ///< all parts, one after the other
-  std::vector<ModelPart> parts;    ///< at least one
-  std::vector<Triangle> triangles; ///< T: the faces, cut
-  std::vector<Triangle> coarse;    ///< fewer, of the same vertices, to draw while a large model
-                                   ///< moves: see coarse_triangles(); none for small models
-  std::vector<Vec3> normals;       ///< V smooth unit normals
-  TriangleBvh bvh;                 ///< over the triangles
-  Box3 box;                        ///< of all vertices
-  double diagonal = 1;             ///< of that box; the unit of all tolerances
-  std::filesystem::path path;      ///< of the first part; empty for a mesh in memory
-  std::vector<FileNote> notes;     ///< of all parts
-  std::uint64_t checksum = 0;      ///< of the positions
+  PolygonMesh mesh;                   ///< all parts, one after the other
+  std::vector<ModelPart> parts;       ///< at least one
+  std::vector<Triangle> triangles;    ///< T: the faces, cut
+  std::vector<Triangle> coarse;       ///< fewer, of the same vertices, to draw while a large model
+                                      ///< moves: see coarse_triangles(); none for small models
+  std::vector<Vec3> normals;          ///< V smooth unit normals
+  std::shared_ptr<const Dress> dress; ///< how it is drawn in its own colors; none: as it is
+  TriangleBvh bvh;                    ///< over the triangles
+  Box3 box;                           ///< of all vertices
+  double diagonal = 1;                ///< of that box; the unit of all tolerances
+  std::filesystem::path path;         ///< of the first part; empty for a mesh in memory
+  std::vector<FileNote> notes;        ///< of all parts
+  std::uint64_t checksum = 0;         ///< of the positions
 
   [[nodiscard]] const PolygonMesh& mesh_of(const ModelPart& part) const {
     return parts.size() == 1 ? mesh : part.mesh;

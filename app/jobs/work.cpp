@@ -181,18 +181,24 @@ Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path
 }
 
 Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const PolygonMesh& cage,
+                                                  const CoordinateSettings& coordinates,
                                                   const Progress& progress) {
   DeformerOptions options;
+  options.coordinates = coordinates;
   const double bytes = 4.0 * static_cast<double>(model.mesh.positions.size()) *
                        static_cast<double>(cage.positions.size());
   if (bytes > most_weight_bytes) {
     options.storage = WeightStorage::compact;
   }
-  Result<Deformer> deformer = Deformer::bind(model.mesh, cage, options, {}, progress);
+  Result<Deformer> deformer = Deformer::bind(model.mesh, cage, options, {}, progress.part(0, 0.98));
   if (!deformer) {
     return deformer.error();
   }
-  return std::make_shared<const Binding>(std::move(*deformer));
+  auto prepared = prepare_coordinates(cage, coordinates);
+  if (!prepared) {
+    return prepared.error();
+  }
+  return std::make_shared<const Binding>(std::move(*deformer), coordinates, *std::move(prepared));
 }
 
 Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
@@ -246,9 +252,10 @@ fs::path path_of_part(const Model& model, std::size_t part, const fs::path& path
 }
 
 Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
+                                            const CoordinateSettings& settings,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress) {
-  const auto coordinates = prepare_coordinates(cage_at_rest, {}, progress.part(0, 0.2));
+  const auto coordinates = prepare_coordinates(cage_at_rest, settings, progress.part(0, 0.2));
   if (!coordinates) {
     return coordinates.error();
   }
@@ -276,9 +283,9 @@ Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMes
 }
 
 Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
-                        const TimeLine& time_line, const std::filesystem::path& path,
-                        const Progress& progress) {
-  const auto coordinates = prepare_coordinates(cage_at_rest, {}, progress.part(0, 0.1));
+                        const CoordinateSettings& settings, const TimeLine& time_line,
+                        const std::filesystem::path& path, const Progress& progress) {
+  const auto coordinates = prepare_coordinates(cage_at_rest, settings, progress.part(0, 0.1));
   if (!coordinates) {
     return coordinates.error();
   }
@@ -328,8 +335,8 @@ Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
 }
 
 Status export_weights(const Model& model, const PolygonMesh& cage,
-                      const std::filesystem::path& path, const Progress& progress) {
-  const CoordinateSettings settings;
+                      const CoordinateSettings& settings, const std::filesystem::path& path,
+                      const Progress& progress) {
   const auto coordinates = prepare_coordinates(cage, settings, progress.part(0, 0.2));
   if (!coordinates) {
     return coordinates.error();

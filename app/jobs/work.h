@@ -42,6 +42,7 @@ Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path
 /// Binds the model to the cage. Weights that would take more than 1.5 GB are kept in 16 bits.
 /// Errors: those of Deformer::bind().
 Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const PolygonMesh& cage,
+                                                  const CoordinateSettings& coordinates = {},
                                                   const Progress& progress = {});
 
 struct JudgedCage {
@@ -71,6 +72,7 @@ std::filesystem::path path_of_part(const Model& model, std::size_t part,
 /// the model is gone), mismatch (it is another now), cannot_write, unsupported, invalid_cage,
 /// cancelled.
 Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
+                                            const CoordinateSettings& settings,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress = {});
 
@@ -78,11 +80,12 @@ Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMes
 /// deformed, whatever the number of frames.
 /// Errors: those of write_animation(), invalid_cage.
 Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
-                        const TimeLine& time_line, const std::filesystem::path& path,
-                        const Progress& progress = {});
+                        const CoordinateSettings& settings, const TimeLine& time_line,
+                        const std::filesystem::path& path, const Progress& progress = {});
 
 /// Binds once more and writes the weights as NumPy's .npz. Errors: cannot_write, cancelled.
 Status export_weights(const Model& model, const PolygonMesh& cage,
-                      const std::filesystem::path& path, const Progress& progress = {});
+                      const CoordinateSettings& settings, const std::filesystem::path& path,
+                      const Progress& progress = {});
 
 } // namespace cagewright::app

@@ -13,10 +13,15 @@
 namespace cagewright::app {
 namespace {
 
-/// Whether all words that were typed begin words of the name, or are parts of it.
-bool matches(const QString& name, const QStringList& words) {
+/// Whether all words that were typed are in a text.
+bool matches(const QString& text, const QStringList& words) {
   return std::ranges::all_of(
-      words, [&](const QString& word) { return name.contains(word, Qt::CaseInsensitive); });
+      words, [&](const QString& word) { return text.contains(word, Qt::CaseInsensitive); });
+}
+
+/// Smaller where a command's own name has the words: what only its help has comes after.
+int rank(const QAction& command, const QStringList& words) {
+  return matches(plain_text(command), words) ? 0 : matches(full_name(command), words) ? 1 : 2;
 }
 
 } // namespace
@@ -24,6 +29,11 @@ bool matches(const QString& name, const QStringList& words) {
 QString plain_text(const QAction& action) {
   QString text = action.text();
   return text.remove('&').remove("...");
+}
+
+QString full_name(const QAction& action) {
+  const QString menu = action.property(menu_property).toString();
+  return menu.isEmpty() ? plain_text(action) : menu + " \u203a " + plain_text(action);
 }
 
 CommandSearch::CommandSearch(const QList<QAction*>& commands, QWidget* parent)
@@ -45,7 +55,7 @@ CommandSearch::CommandSearch(const QList<QAction*>& commands, QWidget* parent)
   connect(text_, &QLineEdit::textChanged, this, &CommandSearch::update_list);
   connect(list_, &QListWidget::itemClicked, this, &CommandSearch::run);
   std::ranges::sort(commands_, [](const QAction* a, const QAction* b) {
-    return plain_text(*a).localeAwareCompare(plain_text(*b)) < 0;
+    return full_name(*a).localeAwareCompare(full_name(*b)) < 0;
   });
   update_list();
   text_->setFocus();
@@ -55,13 +65,15 @@ void CommandSearch::update_list() {
   const QStringList words = text_->text().split(' ', Qt::SkipEmptyParts);
   list_->clear();
   shown_.clear();
-  for (QAction* command : commands_) {
-    const QString name = plain_text(*command);
-    if (!matches(name, words)) {
+  QList<QAction*> best = commands_;
+  std::ranges::stable_sort(best, {}, [&](const QAction* a) { return rank(*a, words); });
+  for (QAction* command : best) {
+    const QString name = full_name(*command);
+    if (!matches(name + " " + command->statusTip(), words)) {
       continue;
     }
     const QString keys = command->shortcut().toString(QKeySequence::NativeText);
-    auto* item = new QListWidgetItem(keys.isEmpty() ? name : name + "\t" + keys, list_);
+    auto* item = new QListWidgetItem(keys.isEmpty() ? name : name + "   " + keys, list_);
     item->setToolTip(command->toolTip());
     if (!command->isEnabled()) { // seen, so that one knows it exists
       item->setFlags(item->flags() & ~Qt::ItemIsEnabled);

@@ -34,4 +34,9 @@ private:
 /// What stands in the menu, without the underlined letter and the dots.
 QString plain_text(const QAction& action);
 
+/// Of an action: the title of the menu that it stands in.
+inline constexpr const char* menu_property = "menu_title";
+/// The same with its menu, without which "All" or "Back" says little.
+QString full_name(const QAction& action);
+
 } // namespace cagewright::app

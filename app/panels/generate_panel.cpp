@@ -97,7 +97,11 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
   }
   defaults_ = new QPushButton(tr("Defaults"));
   defaults_->setToolTip(tr("Puts all options back"));
-  connect(defaults_, &QPushButton::clicked, this, [this] { session_.set_settings({}); });
+  connect(defaults_, &QPushButton::clicked, this, [this] {
+    GenerateSettings defaults; // of a cage: how it is followed is another matter
+    defaults.coordinates = session_.settings().coordinates;
+    session_.set_settings(defaults);
+  });
   grid->addWidget(defaults_, grid->rowCount(), 1);
 
   auto* scroll = new QScrollArea;
@@ -119,6 +123,16 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
   load_->setToolTip(tr("A cage made elsewhere, from a file"));
   connect(load_, &QPushButton::clicked, this, &GeneratePanel::loadCageRequested);
   layout->addWidget(load_);
+
+  auto* follows = new QGridLayout;
+  follows->setColumnStretch(1, 1);
+  follows->setHorizontalSpacing(6);
+  layout->addLayout(follows);
+  for (const GenerateOption& option : generate_options()) {
+    if (option.group == GenerateOption::Group::binding) {
+      add_option(option, follows);
+    }
+  }
 
   bind_ = new QPushButton(tr("Bind"));
   bind_->setObjectName("bind");
@@ -254,7 +268,8 @@ void GeneratePanel::update_options() {
     row.show_value();
     const GenerateOption::Group group = row.option->group;
     const bool visible = row.option->applies(session_.settings()) &&
-                         (advanced || group == GenerateOption::Group::basic);
+                         (advanced || group == GenerateOption::Group::basic ||
+                          group == GenerateOption::Group::binding);
     for (QWidget* field : row.fields) {
       field->setVisible(visible);
     }

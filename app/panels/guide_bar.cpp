@@ -46,6 +46,7 @@ GuideBar::GuideBar(Session& session, QWidget* parent) : QFrame(parent), session_
   connect(&document, &Document::cageChanged, this, &GuideBar::update_step);
   connect(&document, &Document::modeChanged, this, &GuideBar::update_step);
   connect(&document, &Document::selectionChanged, this, &GuideBar::update_step);
+  connect(&document, &Document::toolsChanged, this, &GuideBar::update_step);
   connect(&session.editor().undo_stack(), &QUndoStack::indexChanged, this, &GuideBar::update_step);
   connect(&session.jobs(), &JobRunner::started, this, &GuideBar::update_step);
   connect(&session.jobs(), &JobRunner::finished, this, &GuideBar::update_step);
@@ -66,6 +67,10 @@ void GuideBar::update_step() {
     say(tr("<b>Step 2 of 5.</b> Make a cage: a coarse shell round the model, by which you will "
            "move it."),
         tr("Generate Cage"));
+  } else if (document.mode() == Mode::refine && document.tools().tool == Tool::paint) {
+    say(tr("<b>Step 2 of 5.</b> Paint on the model where the cage is to be finer. Then make "
+           "another one (Ctrl+G)."),
+        {});
   } else if (document.mode() == Mode::refine) {
     say(tr("<b>Step 3 of 5.</b> Edit the cage if you like: it stays a cage while nothing turns "
            "red. Then bind the model to it."),
@@ -73,7 +78,10 @@ void GuideBar::update_step() {
   } else if (document.cage_positions().empty() ||
              std::equal(document.cage_positions().begin(), document.cage_positions().end(),
                         document.cage_rest().positions.begin())) {
-    say(document.selection().empty()
+    say(document.tools().tool == Tool::pull ? tr("<b>Step 4 of 5.</b> Drag the model itself: its "
+                                                 "cage comes along. A click leaves a "
+                                                 "pin that holds it.")
+        : document.selection().empty()
             ? tr("<b>Step 4 of 5.</b> Click a vertex of the cage. Shift adds more.")
             : tr("<b>Step 4 of 5.</b> Drag an arrow of the gizmo, or press G and move the mouse: "
                  "the model follows."),

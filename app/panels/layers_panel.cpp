@@ -132,7 +132,8 @@ void LayersPanel::add_looks(QVBoxLayout* layout) {
   look_->addItems(
       {tr("Plain"), tr("Clay"), tr("Wax"), tr("Metal"), tr("Stripes"), tr("Its own colors")});
   look_->setToolTip(tr("What the model is made of, as it were. Metal and stripes show bumps and "
-                       "kinks that a deformation makes"));
+                       "kinks that a deformation makes. Its own colors are those of its file: "
+                       "materials, textures, colors of vertices and faces"));
   row->addWidget(look_, 1);
   layout->addLayout(row);
   connect(look_, &QComboBox::currentIndexChanged, this, [this](int at) {

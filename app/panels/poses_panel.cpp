@@ -42,7 +42,7 @@ PosesPanel::PosesPanel(Editor& editor, QWidget* parent)
   update_ = button("update_pose", tr("Replace"), tr("The cage as it is becomes this pose"));
   apply_ = button("apply_pose", tr("Apply"), tr("The cage takes this pose"));
   remove_ = button("remove_pose", tr("Remove"), tr("Forgets this pose"));
-  reset_ = button("reset_pose", tr("Reset"), tr("The cage goes back to rest (Ctrl+R)"));
+  reset_ = button("reset_pose", tr("Reset"), tr("The cage goes back to rest (Ctrl+Shift+R)"));
   compare_ = button("compare", tr("Compare"), tr("Hold to see the model at rest (hold C)"));
   auto* grid = new QGridLayout;
   grid->addWidget(add_, 0, 0);

@@ -207,7 +207,17 @@ void ToolBar::add_choice(std::size_t number) {
   choice.button->setPopupMode(QToolButton::InstantPopup);
   choice.button->setMenu(choice.menu);
   choice.button->setAutoRaise(true);
-  choice.button->setStyleSheet("QToolButton { padding-right: 14px; }"); // for the arrow
+  choice.button->setStyleSheet( // with room for the arrow
+      "QToolButton { padding-right: 13px; } "
+      "QToolButton::menu-indicator { subcontrol-origin: padding; subcontrol-position: right "
+      "center; "
+      "right: 2px; }");
+  connect(choice.menu, &QMenu::aboutToHide, choice.button, [button = choice.button] {
+    // A click elsewhere closes the menu; that the pointer has gone nobody tells the button.
+    const bool under = button->rect().contains(button->mapFromGlobal(QCursor::pos()));
+    button->setAttribute(Qt::WA_UnderMouse, under);
+    button->update();
+  });
   addWidget(choice.button);
   choices_.push_back(choice);
 }

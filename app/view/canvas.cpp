@@ -147,6 +147,13 @@ void Canvas::set_model_colors(std::span<const Color> colors) {
   gl_->kept_view.reset();
 }
 
+void Canvas::set_model_texture(std::span<const std::array<float, 2>> points,
+                               std::span<const std::array<float, 4>> places,
+                               const Picture& picture) {
+  gl_->model.set_texture(points, places, picture);
+  gl_->kept_view.reset();
+}
+
 void Canvas::set_solids(std::vector<FaceMark> solids) {
   gl_->solids = std::move(solids);
   gl_->kept_view.reset();

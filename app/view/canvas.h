@@ -55,6 +55,13 @@ struct Overlay {
   std::vector<DotMark> dots;
 };
 
+/// Pixels in rows, the lowest first.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::span<const std::uint8_t> rgba; ///< width x height x 4
+};
+
 struct CanvasView {
   /// From (p - center) * scale to clip coordinates: of OrbitCamera::clip_matrix().
   Eigen::Matrix4d clip = Eigen::Matrix4d::Identity();
@@ -99,6 +106,14 @@ public:
   void move_model(std::span<const Vec3> positions, std::span<const Vec3> normals);
   /// V colours instead of one; empty: one.
   void set_model_colors(std::span<const Color> colors);
+
+  /// A texture for the model, by which its colours are multiplied; an empty picture: none.
+  /// \param points  V texture points, v upwards; they repeat beyond 0 and 1
+  /// \param places  V corners and sizes of what they are points of, as fractions of the image; of
+  /// no
+  ///                size: no texture there
+  void set_model_texture(std::span<const std::array<float, 2>> points,
+                         std::span<const std::array<float, 4>> places, const Picture& picture);
 
   /// Opaque faces that are drawn with the model.
   void set_solids(std::vector<FaceMark> solids);

@@ -146,16 +146,22 @@ inline constexpr const char* model_vertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
 layout(location = 2) in vec4 color;
+layout(location = 3) in vec2 texture_point;
+layout(location = 4) in vec4 texture_place;
 uniform mat4 clip;
 uniform mat3 axes;
 uniform vec4 one_color; // opacity 0: each vertex has its own
 out vec3 view_normal;
 out vec3 place;
 out vec3 base;
+out vec2 texture_at;
+flat out vec4 texture_in;
 void main() {
   view_normal = axes * normal.xyz;
   place = axes * position;
   base = one_color.a > 0 ? one_color.rgb : color.rgb;
+  texture_at = texture_point;
+  texture_in = texture_place;
   gl_Position = clip * vec4(position, 1);
 }
 )";
@@ -166,6 +172,20 @@ in vec3 place;
 in vec3 base;
 uniform int smooth_normals;
 uniform int look;
+in vec2 texture_at;
+flat in vec4 texture_in; // corner and size in the atlas
+uniform int textured;
+uniform vec2 texture_size;
+uniform sampler2D atlas;
+// Not of the neighbors in the atlas: half a pixel within.
+vec3 texture_color() {
+  if (textured == 0 || texture_in.z <= 0) {
+    return vec3(1);
+  }
+  vec2 half_pixel = 0.5 / (texture_in.zw * texture_size);
+  vec2 at = clamp(fract(texture_at), half_pixel, 1 - half_pixel);
+  return textureLod(atlas, texture_in.xy + at * texture_in.zw, 0).rgb;
+}
 out vec4 color;
 void main() {
   vec3 flat_normal = normalize(cross(dFdx(place), dFdy(place)));
@@ -174,7 +194,7 @@ void main() {
   if (dot(n, flat_normal) < 0) { // the back of the surface
     n = -n;
   }
-  color = vec4(surface(look, base, n), 1);
+  color = vec4(surface(look, base * texture_color(), n), 1);
 }
 )";
 

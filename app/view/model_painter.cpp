@@ -89,6 +89,42 @@ void ModelPainter::set_colors(std::span<const Color> colors) {
   glBindVertexArray(0);
 }
 
+void ModelPainter::set_texture(std::span<const std::array<float, 2>> points,
+                               std::span<const std::array<float, 4>> places,
+                               const Picture& picture) {
+  const bool fits = points.size() == vertices_ && places.size() == vertices_;
+  texture_width_ = fits ? picture.width : 0;
+  texture_height_ = picture.height;
+  if (texture_width_ > 0) {
+    texture_points_.fill(GL_ARRAY_BUFFER, points, GL_STATIC_DRAW);
+    texture_places_.fill(GL_ARRAY_BUFFER, places, GL_STATIC_DRAW);
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    texture_ = gl::Texture(id);
+    glBindTexture(GL_TEXTURE_2D, id);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, picture.width, picture.height, 0, GL_RGBA,
+                 GL_UNSIGNED_BYTE, picture.rgba.data());
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+      glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    }
+    glBindTexture(GL_TEXTURE_2D, 0);
+  }
+  for (const gl::VertexArray* array : {&array_, &coarse_array_}) {
+    glBindVertexArray(array->id());
+    if (texture_width_ == 0) {
+      glDisableVertexAttribArray(3);
+      glDisableVertexAttribArray(4);
+    } else {
+      glBindBuffer(GL_ARRAY_BUFFER, texture_points_.id());
+      attribute(3, 2, GL_FLOAT, sizeof(std::array<float, 2>), 0);
+      glBindBuffer(GL_ARRAY_BUFFER, texture_places_.id());
+      attribute(4, 4, GL_FLOAT, sizeof(std::array<float, 4>), 0);
+    }
+  }
+  glBindVertexArray(0);
+}
+
 void ModelPainter::draw(const CanvasView& view) const {
   const bool coarse = view.coarse && has_coarse();
   const Uniforms uniforms(model_);
@@ -98,8 +134,19 @@ void ModelPainter::draw(const CanvasView& view) const {
   uniforms.set("smooth_normals", view.smooth ? 1 : 0);
   // Colors that say something are seen as they are.
   uniforms.set("look", static_cast<int>(has_colors_ ? SurfaceLook::studio : view.look));
+  const bool textured = texture_width_ > 0;
+  uniforms.set("textured", textured ? 1 : 0);
+  uniforms.set("texture_size", texture_width_, texture_height_);
+  uniforms.set("atlas", 0);
+  if (textured) {
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, texture_.id());
+  }
   glBindVertexArray(coarse ? coarse_array_.id() : array_.id());
   glDrawElements(GL_TRIANGLES, coarse ? coarse_corners_ : corners_, GL_UNSIGNED_INT, nullptr);
+  if (textured) {
+    glBindTexture(GL_TEXTURE_2D, 0);
+  }
 }
 
 void ModelPainter::make_edges() {

@@ -19,6 +19,8 @@ public:
   void set_triangles(std::span<const Triangle> triangles, std::span<const Triangle> coarse);
   void move(std::vector<Eigen::Vector3f> positions, std::span<const Vec3> normals);
   void set_colors(std::span<const Color> colors);
+  void set_texture(std::span<const std::array<float, 2>> points,
+                   std::span<const std::array<float, 4>> places, const Picture& picture);
 
   [[nodiscard]] bool empty() const { return corners_ == 0; }
   [[nodiscard]] bool has_coarse() const { return coarse_corners_ > 0; }
@@ -33,6 +35,10 @@ private:
   gl::Program model_, wire_;
   gl::VertexArray array_, coarse_array_, wire_array_;
   StreamBuffer positions_, normals_, colors_, indices_, coarse_indices_, edges_;
+  StreamBuffer texture_points_, texture_places_;
+  gl::Texture texture_;
+  int texture_width_ = 0; // 0: none
+  int texture_height_ = 0;
   GLsizei corners_ = 0;
   GLsizei coarse_corners_ = 0;
   GLsizei edge_ends_ = 0;

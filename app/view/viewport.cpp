@@ -26,6 +26,16 @@ constexpr int refine_after = 15;
 // Of a picture for a file.
 constexpr int samples_of_picture = 6;
 
+std::vector<Vec3> gathered(std::span<const Vec3> of_vertices, std::span<const Index> vertices) {
+  std::vector<Vec3> found(vertices.size(), Vec3::Zero());
+  parallel_for(0, vertices.size(), 8192, [&](std::size_t i) {
+    if (vertices[i] < of_vertices.size()) {
+      found[i] = of_vertices[vertices[i]];
+    }
+  });
+  return found;
+}
+
 } // namespace
 
 Viewport::Viewport(Editor& editor, QWidget* parent)
@@ -110,6 +120,7 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
     const bool paints = document_.tools().tool == Tool::paint;
     dirty_.colors = dirty_.colors || paints != painted_before_;
     painted_before_ = paints;
+    update_cursor();
     update();
   });
   connect(&document_, &Document::pinsChanged, this, repaint);
@@ -304,6 +315,13 @@ void Viewport::resizeGL(int width, int height) {
   camera_.resize(width, height);
 }
 
+/// In its own colors, with materials and textures, unless other colors say something.
+bool Viewport::wears_dress() const {
+  return document_.layers().look == SurfaceLook::own && document_.has_model() &&
+         document_.model()->dress && document_.tools().tool != Tool::paint &&
+         !(document_.layers().weights && !document_.model_weights().empty());
+}
+
 void Viewport::upload() {
   if (dirty_.frame) {
     const Box3 box = scene_box();
@@ -312,20 +330,48 @@ void Viewport::upload() {
                        radius > 0 ? 1 / radius : 1);
     dirty_.frame = false;
   }
-  if (dirty_.model) {
+  if (wears_dress() != dressed_) {
+    dressed_ = !dressed_;
+    dirty_.model = true;
+  }
+  if (dressed_ && (dirty_.model || dirty_.positions)) {
+    const Dress& dress = *document_.model()->dress;
+    const std::vector<Vec3> positions = gathered(document_.model_positions(), dress.vertex_of);
+    const std::vector<Vec3> normals = gathered(document_.model_normals(), dress.vertex_of);
+    if (dirty_.model) {
+      canvas_->set_model(positions, normals, dress.triangles, dress.coarse);
+    } else {
+      canvas_->move_model(positions, normals);
+    }
+  } else if (dirty_.model) {
     canvas_->set_model(document_.model_positions(), document_.model_normals(),
                        document_.model_triangles(), document_.coarse_triangles());
-    dirty_.colors = true;
   } else if (dirty_.positions) {
     canvas_->move_model(document_.model_positions(), document_.model_normals());
+  }
+  if (dirty_.model) {
+    dirty_.colors = true;
+    if (dressed_) {
+      const Dress& dress = *document_.model()->dress;
+      const QImage& atlas = dress.atlas;
+      canvas_->set_model_texture(
+          dress.texture_points, dress.places,
+          {atlas.width(),
+           atlas.height(),
+           {atlas.constBits(), static_cast<std::size_t>(atlas.sizeInBytes())}});
+    } else {
+      canvas_->set_model_texture({}, {}, {});
+    }
   }
   dirty_.model = dirty_.positions = false;
   if (dirty_.colors) {
     const std::span<const float> weights = document_.model_weights();
     std::vector<Color> colors;
     const SharedDensity& density = document_.state().density;
-    if (document_.tools().tool == Tool::paint && density &&
-        density->size() == document_.model_positions().size()) {
+    if (dressed_) {
+      colors = document_.model()->dress->colors;
+    } else if (document_.tools().tool == Tool::paint && density &&
+               density->size() == document_.model_positions().size()) {
       colors.resize(density->size());
       parallel_for(0, colors.size(), 4096,
                    [&](std::size_t i) { colors[i] = density_color((*density)[i], colors_.model); });

@@ -140,6 +140,7 @@ private:
   };
   struct Stroke {
     bool erases = false;
+    bool painted = false; ///< it has met the model
     double sign = 1;
     Pixel last = Pixel::Zero(); ///< where the last dab was
     std::vector<float> density;
@@ -154,6 +155,7 @@ private:
 
   // What is drawn
   void upload();
+  [[nodiscard]] bool wears_dress() const;
   void something_moves();
   [[nodiscard]] bool draws_coarsely() const;
   [[nodiscard]] Box3 scene_box() const;
@@ -175,6 +177,8 @@ private:
   void forget_outline();
   void hover(const Pixel& cursor);
   void forget_hover();
+  /// The pointer says what a press would do, or what it does.
+  void update_cursor();
   [[nodiscard]] std::vector<Pixel> outline() const;
   [[nodiscard]] PickOptions pick_options() const;
   [[nodiscard]] Selection selection_of(const Pick& pick) const;
@@ -225,6 +229,7 @@ private:
   Dirty dirty_;
   Layers layers_before_; // what the last change of layers changed
   bool painted_before_ = false;
+  bool dressed_ = false; // what the canvas has is the model's dress
   bool with_texts_ = true;
   bool coarse_while_moving_ = true;
   QTimer rest_;   // runs while something moves, and a moment longer

@@ -23,9 +23,23 @@ bool Viewport::event(QEvent* event) {
   // Tab would leave the viewport.
   if (event->type() == QEvent::KeyPress && (drag_.is_active() || loop_cut_)) {
     keyPressEvent(static_cast<QKeyEvent*>(event));
+    update_cursor();
     return true;
   }
-  return QOpenGLWidget::event(event);
+  const bool taken = QOpenGLWidget::event(event);
+  switch (event->type()) {
+  case QEvent::Enter:
+  case QEvent::MouseButtonPress:
+  case QEvent::MouseButtonRelease:
+  case QEvent::MouseMove:
+  case QEvent::KeyPress:
+  case QEvent::KeyRelease:
+    update_cursor();
+    break;
+  default:
+    break;
+  }
+  return taken;
 }
 
 bool Viewport::drag_key(QKeyEvent* event) {

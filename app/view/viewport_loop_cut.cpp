@@ -59,7 +59,9 @@ void Viewport::preview_loop_cut() {
     }
   }
   const int cuts = loop_cut_->cuts;
-  caption_ = loop_cut_->slides
+  caption_ = !loop_cut_->edge           ? tr("Loop cut: point at an edge")
+             : loop_cut_->lines.empty() ? tr("Loop cut: no quads beside this edge")
+             : loop_cut_->slides
                  ? tr("Loop cut: slide, %1 %").arg(std::lround(100 * loop_cut_->slide))
              : cuts == 1 ? tr("Loop cut: 1 loop")
                          : tr("Loop cut: %1 loops").arg(cuts);
@@ -130,6 +132,11 @@ void Viewport::add_loop_cuts(int more) {
 /// From choosing to sliding, from sliding to done.
 void Viewport::confirm_loop_cut() {
   if (!loop_cut_->edge) {
+    return;
+  }
+  if (loop_cut_->lines.empty()) {
+    Q_EMIT editor_.message(
+        tr("loops go through quads, and there are none beside this edge: split it instead"));
     return;
   }
   if (!loop_cut_->slides) {

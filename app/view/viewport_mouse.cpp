@@ -81,6 +81,31 @@ void Viewport::forget_hover() {
   hovered_handle_ = Handle::none;
 }
 
+void Viewport::update_cursor() {
+  const Tool tool = document_.tools().tool;
+  const bool on_handle = hovered_handle_ != Handle::none && hovered_handle_ != Handle::trackball;
+  Qt::CursorShape shape = Qt::ArrowCursor;
+  if (drag_.is_active()) {
+    shape = Qt::SizeAllCursor;
+  } else if (gesture_ == Gesture::orbit || gesture_ == Gesture::pan || gesture_ == Gesture::pull) {
+    shape = Qt::ClosedHandCursor;
+  } else if (gesture_ == Gesture::zoom) {
+    shape = Qt::SizeVerCursor;
+  } else if (loop_cut_ || box_armed_ || gesture_ == Gesture::box || gesture_ == Gesture::lasso ||
+             gesture_ == Gesture::paint) {
+    shape = Qt::CrossCursor;
+  } else if (tool == Tool::pull && document_.mode() == Mode::deform) {
+    shape = pin_at(cursor_) ? Qt::OpenHandCursor : Qt::CrossCursor;
+  } else if (on_handle) {
+    shape = Qt::SizeAllCursor;
+  } else if (tool == Tool::select_box || tool == Tool::select_lasso || tool == Tool::paint) {
+    shape = Qt::CrossCursor;
+  }
+  if (shape != cursor().shape()) {
+    setCursor(shape);
+  }
+}
+
 void Viewport::hover(const Pixel& cursor) {
   const std::optional<Pick> before = hovered_;
   const Handle handle_before = hovered_handle_;
@@ -88,7 +113,8 @@ void Viewport::hover(const Pixel& cursor) {
   if (document_.tools().tool == Tool::paint) {
     update(); // the brush goes along
   }
-  if (document_.has_cage() && !drag_.is_active()) {
+  const bool paints = document_.tools().tool == Tool::paint && document_.mode() == Mode::refine;
+  if (document_.has_cage() && !drag_.is_active() && !paints) {
     refresh_graph();
     if (const std::optional<GizmoFrame> frame = gizmo()) {
       hovered_handle_ = handle_at(camera_, tool_kind(), *frame, cursor);

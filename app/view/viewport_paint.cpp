@@ -42,10 +42,7 @@ bool Viewport::paint_press(const Qt::KeyboardModifiers& modifiers) {
                               "rest"));
     return true;
   }
-  if (!dab_at(cursor_)) {
-    return false; // beside the model
-  }
-  editor_.begin_step();
+  editor_.begin_step(); // the stroke may come from beside the model
   stroke_.emplace();
   stroke_->erases = modifiers.testFlag(Qt::ShiftModifier);
   stroke_->sign = modifiers.testFlag(Qt::ControlModifier) ? -1 : 1;
@@ -74,12 +71,13 @@ void Viewport::add_dabs(bool first) {
       dab->amount = stroke_->sign * tools.brush_strength;
       dab->erases = stroke_->erases;
       add_dab(*dab, model.mesh.positions, model.normals, stroke_->density);
+      stroke_->painted = true;
     }
   }
-  if (count > 0) {
-    if (!first) {
-      stroke_->last += way * (count * step / way.norm());
-    }
+  if (count > 0 && !first) {
+    stroke_->last += way * (count * step / way.norm());
+  }
+  if (count > 0 && stroke_->painted) {
     document_.set_density(std::make_shared<const std::vector<float>>(stroke_->density));
   }
   update();
@@ -89,9 +87,10 @@ void Viewport::end_stroke(bool keep) {
   if (!stroke_) {
     return;
   }
+  const bool painted = stroke_->painted;
   stroke_.reset();
   gesture_ = Gesture::none;
-  if (keep) {
+  if (keep && painted) {
     editor_.end_step(tr("Paint Density"));
   } else {
     editor_.cancel_step();

@@ -1,8 +1,8 @@
 // Dragging the model itself: the cage is solved for.
 #include "app/view/viewport.h"
 
+#include "app/document/binding.h"
 #include "app/edit/surface_pick.h"
-#include <cagewright/coordinates/kinds.h>
 
 #include <algorithm>
 #include <array>
@@ -15,15 +15,11 @@ constexpr double pin_radius = 10; // so near to a pin the pointer takes it, in p
 
 /// The weights of a point on a triangle of the model, as the triangle's corners have them.
 std::shared_ptr<const std::vector<double>>
-weights_at(const PolygonMesh& cage, const std::array<Vec3, 3>& corners, const Vec3& shares) {
-  const auto coordinates = prepare_coordinates(cage, {}, {});
-  if (!coordinates) {
-    return nullptr; // it was bound to this cage: it has weights
-  }
+weights_at(const Coordinates& coordinates, const std::array<Vec3, 3>& corners, const Vec3& shares) {
   constexpr std::size_t stride = 16;
-  std::vector<double> of_corners(stride * cage.positions.size());
-  (*coordinates)->solve(corners, std::span<double>(of_corners), stride);
-  std::vector<double> weights(cage.positions.size());
+  std::vector<double> of_corners(stride * coordinates.columns());
+  coordinates.solve(corners, std::span<double>(of_corners), stride);
+  std::vector<double> weights(coordinates.columns());
   for (std::size_t c = 0; c < weights.size(); ++c) {
     for (int k = 0; k < 3; ++k) {
       weights[c] += shares[k] * of_corners[c * stride + static_cast<std::size_t>(k)];
@@ -59,11 +55,8 @@ std::optional<Pin> Viewport::new_pin(const Pixel& cursor) const {
   for (std::size_t k = 0; k < 3; ++k) {
     corners[k] = model.mesh.positions[model.triangles[hit->triangle][k]];
   }
-  auto weights = weights_at(document_.cage_rest(), corners, hit->shares);
-  if (!weights) {
-    return std::nullopt;
-  }
-  return Pin{hit->triangle, hit->shares, std::move(weights)};
+  return Pin{hit->triangle, hit->shares,
+             weights_at(document_.state().binding->coordinates(), corners, hit->shares)};
 }
 
 /// With the tool: a press on a pin drags it, one on the model makes a pin there.
@@ -73,6 +66,12 @@ bool Viewport::pull_press(const Qt::KeyboardModifiers& modifiers) {
   }
   if (document_.mode() != Mode::deform) {
     Q_EMIT editor_.message(tr("bind the model to its cage first: then it can be dragged"));
+    return true;
+  }
+  const Coordinates& coordinates = document_.state().binding->coordinates();
+  if (coordinates.columns() != document_.cage_rest().positions.size()) {
+    Q_EMIT editor_.message(tr("these coordinates follow the cage's faces, too: drag the cage, or "
+                              "choose mean value to drag the model"));
     return true;
   }
   std::vector<Pin> pins = document_.state().pins;

@@ -23,7 +23,11 @@ TransformKind Viewport::tool_kind() const {
 }
 
 void Viewport::begin_transform(TransformKind kind, Handle handle) {
-  if (!document_.has_cage() || document_.selection().empty() || drag_.is_active()) {
+  if (!document_.has_cage() || drag_.is_active()) {
+    return;
+  }
+  if (document_.selection().empty()) {
+    Q_EMIT editor_.message(tr("select something first"));
     return;
   }
   document_.adopt_shown_cage();

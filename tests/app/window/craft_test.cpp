@@ -13,8 +13,10 @@
 #include <QToolButton>
 #include <QWheelEvent>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 
 namespace cagewright::app {
@@ -27,12 +29,6 @@ protected:
     settle();
   }
   void click_vertex(Index v) { click_at(at(document().shown_cage_positions()[v])); }
-  void take_tool(Tool tool) {
-    ToolSettings tools = document().tools();
-    tools.tool = tool;
-    document().set_tools(tools);
-    settle();
-  }
   /// Chooses in the preferences, as a person would.
   void prefer(const char* box, const QString& data) {
     bool chosen = false;
@@ -410,6 +406,64 @@ TEST_F(Craft, ShowsAtRestWhatItShowedBefore) {
   settle();
   view().finish_picture();
   EXPECT_LT(mean_difference(first, window->grab().toImage()), 8) << "and with shade in corners";
+}
+
+/// The mean color of the picture where the model is seen.
+std::array<double, 3> color_round(const QImage& picture, QPoint place) {
+  std::array<double, 3> sum = {0, 0, 0};
+  for (int y = -3; y <= 3; ++y) {
+    for (int x = -3; x <= 3; ++x) {
+      const QColor c = picture.pixelColor(place + QPoint(x, y));
+      sum[0] += c.redF() / 49;
+      sum[1] += c.greenF() / 49;
+      sum[2] += c.blueF() / 49;
+    }
+  }
+  return sum;
+}
+
+TEST_F(Craft, ShowsMaterialsAndTexturesOfTheModel) {
+  // A wall of three: a texture that is red above and blue below, a green material, none.
+  std::ofstream(path("wall.obj").toStdString())
+      << "mtllib wall.mtl\n"
+         "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\nv 3 2 0\n"
+         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+         "usemtl painted\nf 1/1 2/2 6/3 5/4\nusemtl green\nf 2 3 7 6\nusemtl none\nf 3 4 8 7\n";
+  std::ofstream(path("wall.mtl").toStdString())
+      << "newmtl painted\nKd 1 1 1\nmap_Kd -s 1 1 1 two colors.png\nnewmtl green\nKd 0 1 0\n";
+  QImage texture(8, 8, QImage::Format_RGB32);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      texture.setPixelColor(x, y, y < 4 ? Qt::red : Qt::blue);
+    }
+  }
+  ASSERT_TRUE(texture.save(path("two colors.png")));
+  session().open(path("wall.obj").toStdString());
+  wait_for_job();
+  view().set_standard_view("front");
+  view().frame_all();
+  const auto color = [this](const Vec3& place) {
+    settle();
+    view().finish_picture();
+    const double ratio = view().devicePixelRatioF();
+    return color_round(view().grabFramebuffer(), at(place) * ratio);
+  };
+  const std::array<double, 3> plain = color({0.5, 1.5, 0});
+  EXPECT_LT(std::abs(plain[0] - plain[2]), 0.2);
+  auto* look = find<QComboBox>("look");
+  look->setCurrentIndex(look->findText("Its own colors"));
+  const std::array<double, 3> red = color({0.5, 1.5, 0});
+  EXPECT_GT(red[0], red[2] + 0.4);
+  const std::array<double, 3> blue = color({0.5, 0.5, 0});
+  EXPECT_GT(blue[2], blue[0] + 0.4);
+  const std::array<double, 3> green = color({1.5, 1, 0});
+  EXPECT_GT(green[1], green[0] + 0.4);
+  const std::array<double, 3> white = color({2.5, 1, 0});
+  EXPECT_LT(std::abs(white[0] - white[2]), 0.2);
+  EXPECT_GT(white[1], 0.5);
+  keep("materials");
+  look->setCurrentIndex(0);
+  EXPECT_LT(std::abs(color({0.5, 1.5, 0})[0] - plain[0]), 0.05) << "as before";
 }
 
 TEST_F(Craft, LooksLikeWhatIsChosenAndGetsFinerAtRest) {

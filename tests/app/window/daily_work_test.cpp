@@ -1,9 +1,11 @@
 // What a day of work needs, by mouse and by keys.
 #include "window_fixture.h"
 
+#include "app/document/binding.h"
 #include "app/panels/time_line_panel.h"
 #include <cagewright/mesh/measures.h>
 
+#include <QComboBox>
 #include <QContextMenuEvent>
 #include <QCoreApplication>
 #include <QDialog>
@@ -274,6 +276,42 @@ TEST_F(DailyWork, AsksBeforeItBindsACageThatIsNone) {
              bounding_box(good.positions).center())
                 .norm(),
             0.1 * document().diagonal());
+}
+
+TEST_F(DailyWork, FollowsByOtherCoordinatesAndKeepsThePose) {
+  open_caged();
+  bind();
+  drag_vertex({60, 20});
+  const std::vector<Vec3> posed = cage();
+  const std::vector<Vec3> by_mean_value = shown();
+  auto* kinds = find<QComboBox>("coordinates");
+  const int before = kinds->currentIndex();
+  const int other = kinds->findText("Green");
+  ASSERT_GE(other, 0);
+  kinds->setCurrentIndex(other);
+  wait_for_job();
+  EXPECT_EQ(document().state().binding->settings().kind().name, "green");
+  EXPECT_EQ(cage(), posed);
+  EXPECT_GT(greatest_distance(shown(), by_mean_value), 1e-4);
+  // Pins are of the cage's vertices alone: told, not made.
+  ToolSettings tools = document().tools();
+  const Tool tool_before = tools.tool;
+  tools.tool = Tool::pull;
+  document().set_tools(tools);
+  QTest::mouseClick(&view(), Qt::LeftButton, {}, at(shown()[0]));
+  EXPECT_TRUE(document().state().pins.empty());
+  EXPECT_TRUE(find<QLabel>("notice")->isVisible());
+  tools.tool = tool_before;
+  document().set_tools(tools);
+  ASSERT_TRUE(session().save_project(path("green.cagewright").toStdString()));
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
+  EXPECT_EQ(kinds->currentIndex(), before) << "the panel shows what is bound";
+  EXPECT_LT(greatest_distance(shown(), by_mean_value), 1e-9);
+  session().open(path("green.cagewright").toStdString());
+  wait_for_job();
+  EXPECT_EQ(document().state().binding->settings().kind().name, "green");
+  EXPECT_EQ(kinds->currentIndex(), other);
+  EXPECT_EQ(cage(), posed);
 }
 
 TEST_F(DailyWork, ExtrudesInOneStepThatEscapeTakesBackWhole) {

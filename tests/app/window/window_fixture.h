@@ -186,6 +186,12 @@ protected:
     wait_for_job();
     ASSERT_TRUE(document().has_cage());
   }
+  void take_tool(Tool tool) {
+    ToolSettings tools = document().tools();
+    tools.tool = tool;
+    document().set_tools(tools);
+    settle();
+  }
   /// The time line is folded until there is something on it.
   void show_time_line() {
     find<QDockWidget>("dock_time_line")->show();
