@@ -79,10 +79,6 @@ start() {
 stop() { kill $running; wait $running 2>/dev/null || :; }
 keep() { xdotool mousemove $((width / 2)) 5; settle; picture "$images/$1"; }
 
-start light
-keep app-empty.png
-stop
-
 # A model in its cage.
 start light "$model"
 keys ctrl+g

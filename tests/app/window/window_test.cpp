@@ -247,7 +247,7 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
                    static_cast<int>(pick(static_cast<std::size_t>(view().height()))));
     const QPoint b(static_cast<int>(pick(static_cast<std::size_t>(view().width()))),
                    static_cast<int>(pick(static_cast<std::size_t>(view().height()))));
-    switch (pick(10)) {
+    switch (pick(12)) {
     case 0:
     case 1:
       drag(a, b, modifiers[pick(modifiers.size())], mouse_buttons[pick(mouse_buttons.size())]);
@@ -269,6 +269,14 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
       }
       break;
     }
+    case 10: {
+      auto* box = find<QComboBox>(pick(3) == 0 ? "coordinates" : "look");
+      box->setCurrentIndex(static_cast<int>(pick(static_cast<std::size_t>(box->count()))));
+      break;
+    }
+    case 11:
+      QTest::mouseDClick(&view(), Qt::LeftButton, {}, a);
+      break;
     case 2:
       QTest::mouseClick(&view(), Qt::LeftButton, pick(2) == 0 ? Qt::NoModifier : Qt::ShiftModifier,
                         a);
