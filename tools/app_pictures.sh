@@ -71,7 +71,7 @@ start() {
   printf '[General]\ntheme=%s\nask_before_closing=false\n' "$colors" >"$home/.config/Cagewright/Cagewright.conf"
   HOME=$home XDG_CONFIG_HOME=$home/.config XDG_DATA_HOME=$home XDG_RUNTIME_DIR=$home/run "$program" "$@" &
   running=$!
-  processes+=($running)
+  processes+=("$running")
   until xdotool search --onlyvisible --pid $running >/dev/null 2>&1; do sleep 0.2; done
   xdotool mousemove $((width / 2)) $((height - 160))
   settle

@@ -35,7 +35,9 @@ void BM_drag_of_cage_162(benchmark::State& state) {
   Result<Deformer> deformer =
       Deformer::bind(document.model()->mesh, *rest, {.storage = WeightStorage::compact});
   const auto bound = std::chrono::steady_clock::now();
-  editor.bind(std::make_shared<const Binding>(*std::move(deformer)), rest);
+  editor.bind(std::make_shared<const Binding>(*std::move(deformer), CoordinateSettings(),
+                                              *prepare_coordinates(*rest)),
+              rest);
   Viewport view(editor);
   view.resize(320, 240);
   view.show();

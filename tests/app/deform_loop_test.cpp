@@ -35,7 +35,9 @@ protected:
   void bind() {
     Result<Deformer> deformer = Deformer::bind(document.model()->mesh, *rest);
     ASSERT_TRUE(deformer) << deformer.error().message;
-    editor.bind(std::make_shared<const Binding>(*std::move(deformer)), rest);
+    editor.bind(std::make_shared<const Binding>(*std::move(deformer), CoordinateSettings(),
+                                                *prepare_coordinates(*rest)),
+                rest);
   }
   std::vector<Vec3> model_now() {
     return {document.model_positions().begin(), document.model_positions().end()};

@@ -379,7 +379,9 @@ TEST_F(ViewportWith, MovesABoundModelByTheMouse) {
   const auto rest = std::make_shared<const PolygonMesh>(document.cage());
   Result<Deformer> deformer = Deformer::bind(document.model()->mesh, *rest);
   ASSERT_TRUE(deformer) << deformer.error().message;
-  editor.bind(std::make_shared<const Binding>(*std::move(deformer)), rest);
+  editor.bind(std::make_shared<const Binding>(*std::move(deformer), CoordinateSettings(),
+                                              *prepare_coordinates(*rest)),
+              rest);
   loop.finish();
   const std::vector<Vec3> before(document.model_positions().begin(),
                                  document.model_positions().end());
