@@ -336,7 +336,7 @@ TEST_F(SessionTest, SaysThatPosesGoWithTheCageTheyFit) {
                    [&](const QString& text) { said += text.toStdString(); });
   wait();
   EXPECT_TRUE(session_.document().state().poses.empty());
-  EXPECT_NE(said.find("undo brings them back"), std::string::npos) << said;
+  EXPECT_NE(said.find("undo brings it back"), std::string::npos) << said;
   session_.editor().undo_stack().undo();
   EXPECT_EQ(session_.document().state().poses.size(), 1U);
 }
