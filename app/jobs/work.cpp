@@ -190,11 +190,11 @@ Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const Poly
   if (bytes > most_weight_bytes) {
     options.storage = WeightStorage::compact;
   }
-  Result<Deformer> deformer = Deformer::bind(model.mesh, cage, options, {}, progress.part(0, 0.98));
+  Result<Deformer> deformer = Deformer::bind(model.mesh, cage, options, {}, progress.part(0, 0.9));
   if (!deformer) {
     return deformer.error();
   }
-  auto prepared = prepare_coordinates(cage, coordinates);
+  auto prepared = prepare_coordinates(cage, coordinates, progress.part(0.9, 1));
   if (!prepared) {
     return prepared.error();
   }
