@@ -38,7 +38,8 @@ package_file(app share/man/man1 ${made}/cagewright-app.1.gz)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION share/doc/cagewright-doc/docs COMPONENT doc EXCLUDE_FROM_ALL)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION share/doc/cagewright-doc COMPONENT doc EXCLUDE_FROM_ALL
   PATTERN "__pycache__" EXCLUDE)
-package_file(doc share/doc/cagewright-doc ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
+package_file(doc share/doc/cagewright-doc ${PROJECT_SOURCE_DIR}/README.md)
+install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION share/doc/cagewright-doc RENAME NEWS.md COMPONENT doc EXCLUDE_FROM_ALL)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME cagewright)
@@ -90,7 +91,7 @@ string(JOIN "\n" about
   "valid, binds models to them and deforms models.")
 set(same "(= ${CAGEWRIGHT_DEBIAN_VERSION})")
 package(program NAME cagewright SECTION graphics SUMMARY "build cages round 3D models and deform models with them"
-  TEXT "${about}\nThis package has the command line program." SUGGESTS "cagewright-app, cagewright-doc")
+  TEXT "${about}\nThis package has the command line program." RECOMMENDS "libegl1, libgl1-mesa-dri" SUGGESTS "cagewright-app, cagewright-doc")
 if(CAGEWRIGHT_BUILD_APP)
   package(app NAME cagewright-app SECTION graphics SUMMARY "make cages round 3D models and pose models, in a window"
     TEXT "${about}\nThis package has the desktop application." DEPENDS "libqt6svg6, libgl1-mesa-dri | libgl1"
@@ -98,7 +99,9 @@ if(CAGEWRIGHT_BUILD_APP)
 endif()
 set(library libcagewright${PROJECT_VERSION_MAJOR})
 package(library NAME ${library} SECTION libs SUMMARY "cages round 3D models: shared library with a C interface"
-  TEXT "${about}\nThis package has the shared library, for C and for what can call C.")
+  TEXT "${about}\nThis package has the shared library, for C and for what can call C."
+  RECOMMENDS "libegl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${packaging}/triggers) # ldconfig, once the library is there
 package(development NAME libcagewright-dev SECTION libdevel SUMMARY "cages round 3D models: headers and libraries for C++ and C"
   TEXT "${about}\nThis package has the headers, the libraries for C++, and what CMake and\npkg-config need to find them."
   DEPENDS "${library} ${same}, libeigen3-dev, libtbb-dev, libhwy-dev, zlib1g-dev, libpng-dev, libepoxy-dev, libegl-dev, libgmp-dev, libmpfr-dev"
