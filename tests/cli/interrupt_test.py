@@ -91,10 +91,11 @@ class Commands(unittest.TestCase):
 
 class Generate(Commands):
     def test_triangles(self):
-        self.interrupted("generate", self.model, "-o", "cage.obj", "--vertices", "40", outputs=["cage.obj"])
+        self.interrupted("generate", self.model, "-o", "cage.obj", "--vertices", "20", "--rounds", "1",
+                         outputs=["cage.obj"])
 
     def test_quads(self):
-        self.interrupted("generate", self.model, "-o", "cage.obj", "--faces", "60", "--quads", "--rounds", "1",
+        self.interrupted("generate", self.model, "-o", "cage.obj", "--faces", "24", "--quads", "--rounds", "1",
                          "--json", "cage.json", outputs=["cage.obj", "cage.json"])
 
     def test_boxes(self):
