@@ -364,7 +364,7 @@ void Session::open_project(const fs::path& path, const fs::path& model_path, boo
               notes.append(QString::fromStdString(note));
             }
             Q_EMIT failed(tr("Open Project"),
-                          tr("%1 is open, but for what its file says of the view:\n%2\nThe "
+                          tr("%1 is open, but not all that its file says can be used:\n%2\nThe "
                              "usual is used instead.")
                               .arg(name_of(path), notes.join("\n")));
           }

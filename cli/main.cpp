@@ -88,6 +88,8 @@ int run(Session& session) {
     return arena.execute(session.run);
   } catch (const std::bad_alloc&) {
     return fail(out_of_memory(session));
+  } catch (const std::filesystem::filesystem_error& e) { // a name that is too long, a dead disk
+    return fail(cannot_write(e.path1(), e.code().value()));
   } catch (const std::system_error&) { // a thread without room for its stack
     return fail(out_of_memory(session));
   } catch (const std::exception& e) {

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -68,30 +70,40 @@ void check(const PolygonMesh& mesh, const MeshAttributes& attributes) {
   check_written(mesh, attributes);
 }
 
-/// A file that is this process's alone.
-const std::filesystem::path& moved_file() {
-  static const std::filesystem::path path =
-      std::filesystem::temp_directory_path() /
-      ("cagewright-fuzz-" + std::to_string(::getpid()) + ".moved");
-  return path;
+/// A file that is this process's alone, named for its format.
+std::filesystem::path moved_file(const ModelFile& file, bool is_glb) {
+  constexpr std::string_view formats[] = {".obj", ".ply", ".stl", ".off", ".gltf"};
+  const auto at = static_cast<std::size_t>(file.format());
+  return std::filesystem::temp_directory_path() / ("cagewright-fuzz-" + std::to_string(::getpid()) +
+                                                   std::string(is_glb ? ".glb" : formats[at]));
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 bool is_near(double a, double b) {
   return std::abs(a - b) <= 1e-6 * std::abs(b) + 1e-30; // files of floats
 }
 
-void check_moved(const ModelFile& file, const FileNormals& normals) {
+void check_moved(const ModelFile& file, const FileNormals& normals, bool is_glb) {
   std::vector<Vec3> positions = file.mesh().positions;
   for (Vec3& p : positions) {
     p = p / 2 + Vec3(1, 2, 3);
   }
-  const Status written = file.rewrite(positions, normals.normals, moved_file());
+  const std::filesystem::path path = moved_file(file, is_glb);
+  const Status written = file.rewrite(positions, normals.normals, path);
   if (!written) {
     require_one_line(written.error().message);
     return;
   }
-  const Result<ModelFile> moved = ModelFile::open(moved_file(), file.pose());
-  std::filesystem::remove(moved_file());
+  // (By its content alone a file may be of another format than the one tried here.)
+  const Result<ModelFile> moved = file.format() == MeshFormat::gltf
+                                      ? ModelFile::open(path, file.pose())
+                                      : ModelFile::parse(bytes_of(path), file.format(), "moved");
+  std::filesystem::remove(path);
+  std::filesystem::remove(std::filesystem::path(path).replace_extension(".bin"));
   require(moved.has_value(), "a moved model can be read");
   require(moved->format() == format_at_hand, "a moved model has its format");
   require(moved->mesh().positions.size() == positions.size(), "a moved model has its vertices");
@@ -119,7 +131,7 @@ void check_pose(const std::string& bytes, Pose pose) {
   const Result<MeshAttributes> attributes = file->attributes();
   require(attributes.has_value(), "a mesh that can be read has attributes that can");
   check(file->mesh(), *attributes);
-  check_moved(*file, *normals);
+  check_moved(*file, *normals, bytes.starts_with("glTF"));
 }
 
 } // namespace

@@ -338,8 +338,14 @@ QJsonObject place_to_json(const fs::path& file, const fs::path& project) {
           {"relative_path", error ? QString() : QString::fromStdString(relative.string())}};
 }
 
-/// Where the file is now: beside the project as before, if it is there, or else where it was.
+/// Where the file is now: beside the project as before, if it is there, or else where it was. No
+/// file has a zero in its name: none then.
 fs::path place_from(const QJsonObject& json, const fs::path& project) {
+  for (const char* name : {"relative_path", "path"}) {
+    if (json[QLatin1String(name)].toString().contains(QChar(0))) {
+      return {};
+    }
+  }
   const fs::path beside =
       (project.parent_path() / json["relative_path"].toString().toStdString()).lexically_normal();
   std::error_code error;
@@ -460,7 +466,11 @@ Result<Project> parse_project(const QByteArray& bytes, const fs::path& path) {
     }
     project.bound = json["bound"].toBool();
   }
-  project.state.density = density_from_text(json["density"].toString());
+  const QString density = json["density"].toString();
+  project.state.density = density_from_text(density);
+  if (!density.isEmpty() && !project.state.density) {
+    project.notes.emplace_back("the painted density cannot be read; it is left out");
+  }
   project.settings = generate_settings_from_json(json["generate"].toObject());
   const QJsonObject view = json["view"].toObject();
   project.camera = camera_from(view["camera"].toObject(), project.notes);

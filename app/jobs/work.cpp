@@ -4,7 +4,7 @@
 #include "app/document/time_line.h"
 #include "cage/box_cage.h"
 #include <cagewright/cage/density.h>
-#include <cagewright/cage/generate.h>
+#include <cagewright/cage/generate_for_polygons.h>
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
@@ -150,7 +150,7 @@ Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
     return density.error();
   }
   options.density = *density;
-  Result<GeneratedCage> made = generate(model.view(), options, progress);
+  Result<GeneratedCage> made = generate_for_polygons(model.mesh, options, progress);
   if (!made) {
     return made.error();
   }

@@ -82,8 +82,7 @@ Result<BatchJournal> BatchJournal::open(const fs::path& out) {
   journal.path_ = out / "batch.jsonl";
   journal.file_ = ::open(journal.path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (journal.file_ < 0) {
-    return Error{ErrorCode::cannot_write,
-                 one_line(journal.path_.string()) + ": " + std::strerror(errno)};
+    return cannot_write(journal.path_, errno);
   }
   if (::flock(journal.file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     return Error{ErrorCode::cannot_write, one_line(out.string()) +
@@ -93,8 +92,7 @@ Result<BatchJournal> BatchJournal::open(const fs::path& out) {
   bool ends_in_a_line = true;
   journal.entries_ = read_entries(journal.path_, ends_in_a_line);
   if (!ends_in_a_line && ::write(journal.file_, "\n", 1) != 1) {
-    return Error{ErrorCode::cannot_write,
-                 one_line(journal.path_.string()) + ": " + std::strerror(errno)};
+    return cannot_write(journal.path_, errno);
   }
   return journal;
 }
@@ -116,8 +114,9 @@ const BatchEntry* BatchJournal::find(const std::string& model) const {
 
 Status BatchJournal::add(const BatchEntry& entry) {
   const std::string line = text_of(json_of(entry), -1);
+  errno = ENOSPC; // where less is written than asked for
   if (::write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
-    return Error{ErrorCode::cannot_write, one_line(path_.string()) + ": " + std::strerror(errno)};
+    return cannot_write(path_, errno);
   }
   ::fdatasync(file_);
   entries_[entry.model] = entry;

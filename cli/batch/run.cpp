@@ -6,6 +6,7 @@
 #include "batch/plan.h"
 #include "load.h"
 
+#include "io/atomic_file.h"
 #include "io/source.h"
 #include <cagewright/version.h>
 
@@ -463,7 +464,7 @@ int run_batch(const BatchArguments& arguments, const Session& session) {
   std::error_code error;
   fs::create_directories(arguments.out, error);
   if (error) {
-    return fail({ErrorCode::cannot_write, one_line(arguments.out) + ": " + error.message()});
+    return fail(cannot_write(arguments.out, error.value()));
   }
   Result<std::vector<BatchJob>> jobs =
       plan_batch(arguments.inputs, arguments.out, "." + arguments.format);

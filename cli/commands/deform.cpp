@@ -5,6 +5,7 @@
 #include "session.h"
 
 #include "deform/apply.h"
+#include "io/atomic_file.h"
 #include "io/source.h"
 #include "report/following.h"
 #include <cagewright/deform/following.h>
@@ -111,7 +112,7 @@ Result<std::vector<Pose>> plan_outputs(const Options& options, std::vector<std::
     std::error_code error;
     fs::create_directories(options.output, error);
     if (error) {
-      return Error{ErrorCode::cannot_write, options.output + ": " + error.message()};
+      return cannot_write(options.output, error.value());
     }
   }
   return poses;

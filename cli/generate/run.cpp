@@ -12,7 +12,7 @@
 #include "io/source.h"
 #include "io/write_gltf.h"
 #include "voxel/voxel_mesh.h"
-#include <cagewright/cage/generate.h>
+#include <cagewright/cage/generate_for_polygons.h>
 #include <cagewright/io/mesh_format.h>
 #include <cagewright/io/model_file.h>
 #include <cagewright/io/skinned_cage.h>
@@ -142,18 +142,19 @@ int emit_stage(const GenerateArguments& arguments, const Session& session,
   return done;
 }
 
-int make_cage(const GenerateArguments& arguments, const Session& session, const TriangleMesh& model,
+int make_cage(const GenerateArguments& arguments, const Session& session, const PolygonMesh& model,
               const PolygonMesh* start, const std::vector<double>& density) {
   GenerateOptions options = arguments.options;
   options.start = start;
   options.density = density;
-  const Result<GeneratedCage> made = generate(model, options, session.progress());
+  const Result<GeneratedCage> made = generate_for_polygons(model, options, session.progress());
   if (!made) {
     const bool is_about_start = made.error().code == ErrorCode::invalid_cage;
     return fail(
         in_file(is_about_start ? arguments.start : name_of_models(arguments), made.error()));
   }
-  if (const Status written = write_outputs(arguments, made->faces, model, to_json(*made, options));
+  if (const Status written =
+          write_outputs(arguments, made->faces, to_triangle_mesh(model), to_json(*made, options));
       !written) {
     return fail(written.error());
   }
@@ -205,9 +206,8 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
   if (!mesh) {
     return fail(mesh.error());
   }
-  const TriangleMesh model = to_triangle_mesh(*mesh);
   if (arguments.emit != Emit::cage) {
-    return emit_stage(arguments, session, model);
+    return emit_stage(arguments, session, to_triangle_mesh(*mesh));
   }
   std::vector<double> density;
   if (!arguments.density.empty()) {
@@ -225,7 +225,7 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
     }
     start = std::move(*read);
   }
-  return make_cage(arguments, session, model, start ? &*start : nullptr, density);
+  return make_cage(arguments, session, *mesh, start ? &*start : nullptr, density);
 }
 
 } // namespace cagewright::cli

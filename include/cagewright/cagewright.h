@@ -4,6 +4,7 @@
 
 #include <cagewright/cage/density.h>
 #include <cagewright/cage/generate.h>
+#include <cagewright/cage/generate_for_polygons.h>
 #include <cagewright/cage/option_table.h>
 #include <cagewright/coordinates/compact_weights.h>
 #include <cagewright/coordinates/kinds.h>

@@ -21,27 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error cannot_write(const fs::path& path, int error) {
-  const std::string name = one_line(path.string());
-  switch (error) {
-  case ENOENT:
-  case ENOTDIR:
-    return {ErrorCode::cannot_write, name + ": the folder does not exist; create it first"};
-  case EACCES:
-  case EPERM:
-  case EROFS:
-    return {ErrorCode::cannot_write,
-            name + ": writing is not permitted; choose another place or change the permissions"};
-  case ENOSPC:
-  case EDQUOT:
-    return {ErrorCode::cannot_write, name + ": the disk is full; free some space"};
-  default:
-    return {ErrorCode::cannot_write,
-            name + ": cannot be written: " + std::generic_category().message(error) +
-                "; choose another place"};
-  }
-}
-
 // Writes all bytes; 0 or what went wrong.
 int write_all(int file, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -98,6 +77,32 @@ int link_to(int file, const fs::path& name) {
 }
 
 } // namespace
+
+Error cannot_write(const fs::path& path, int error) {
+  const std::string name = one_line(path.string());
+  switch (error) {
+  case ENOENT:
+  case ENOTDIR:
+    return {ErrorCode::cannot_write, name + ": the folder does not exist; create it first"};
+  case EACCES:
+  case EPERM:
+  case EROFS:
+    return {ErrorCode::cannot_write,
+            name + ": writing is not permitted; choose another place or change the permissions"};
+  case ENOSPC:
+  case EDQUOT:
+    return {ErrorCode::cannot_write, name + ": the disk is full; free some space"};
+  case EFBIG:
+    return {ErrorCode::cannot_write,
+            name + ": the limit of file sizes is reached; raise it (ulimit -f unlimited)"};
+  case ENAMETOOLONG:
+    return {ErrorCode::cannot_write, name + ": the name is too long; give a shorter one"};
+  default:
+    return {ErrorCode::cannot_write,
+            name + ": cannot be written: " + std::generic_category().message(error) +
+                "; choose another place"};
+  }
+}
 
 PartFile::PartFile(PartFile&& other) noexcept
     : path_(std::move(other.path_)), target_(std::move(other.target_)),

@@ -76,6 +76,9 @@ Status write_files_atomically(std::span<const NamedBytes> files);
 /// name: for a program that is about to end, whatever its threads are doing.
 void abandon_part_files();
 
+/// Why nothing can be written there, and what helps. \param error  an errno
+Error cannot_write(const std::filesystem::path& path, int error);
+
 /// Whether such a file can be written, asked before minutes are spent on making it. Errors:
 /// cannot_write.
 Status can_write_file(const std::filesystem::path& path);

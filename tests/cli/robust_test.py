@@ -6,6 +6,7 @@ Called as: robust_test.py PROGRAM SAMPLES_DIR [unittest arguments]
 import json
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import sys
@@ -29,7 +30,7 @@ def cube(size=1.0, faces=None):
 
 
 def run(*arguments, **options):
-    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "errors": "replace", **options}
     return subprocess.run([str(PROGRAM), *[a if isinstance(a, bytes) else str(a) for a in arguments]],
                           text=True, timeout=300, check=False, **options)
 
@@ -155,6 +156,51 @@ class Writing(InAFolder):
         self.assertNotIn(made.returncode, (-signal.SIGPIPE, DONE))
         self.assertEqual(sorted(os.listdir(self.folder / "out")), [f"pose{i}.obj" for i in range(3)])
 
+    def test_a_disk_that_fills_up_leaves_what_was_there(self):
+        # A limit of file sizes stops writing where a full disk would.
+        def fill_up():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (64, 64))
+        old = self.file("old", "old")
+        posed = self.file("posed.obj", cube(1.8))
+        before = self.names()
+        for name, command in (("w.npz", ("bind", self.model, self.cage, "-o")), ("w.csv", ("bind", self.model, self.cage, "-o")),
+                              ("w.json", ("bind", self.model, self.cage, "-o")), ("w.dmat", ("bind", self.model, self.cage, "-o")),
+                              ("c.obj", ("generate", self.model, "--method", "boxes", "--depth", 0, "-o")),
+                              ("d.obj", ("deform", self.model, self.cage, posed, "-o")), ("m.obj", ("weld", self.model)),
+                              ("m.ply", ("convert", self.model)), ("m.glb", ("convert", self.model)), ("m.gltf", ("convert", self.model)),
+                              ("i.json", ("info", self.model, "--json"))):
+            for is_there in (False, True):
+                target = self.folder / name
+                if is_there:
+                    target.write_bytes(old.read_bytes())
+                ended = run(*command, target, preexec_fn=fill_up)
+                self.assertEqual(ended.returncode, BAD_INPUT, f"{name}: {ended.stderr}")
+                self.assertIn(name, ended.stderr)
+                self.assertIn("; ", ended.stderr)
+                self.assertEqual(target.exists(), is_there)
+                if is_there:
+                    self.assertEqual(target.read_text(), "old")
+                    target.unlink()
+                self.assertEqual(self.names(), before, name)
+
+    def test_folders_that_cannot_be_made_are_told_with_a_remedy(self):
+        taken = self.file("taken", "")
+        posed = self.file("posed.obj", cube(1.8))
+        for command in (("deform", self.model, self.cage, posed, "-o", f"{taken}/in/"), ("batch", self.model, "-o", f"{taken}/in")):
+            ended = run(*command)
+            self.assertEqual(ended.returncode, BAD_INPUT, ended.stderr)
+            self.assertIn("create it first", ended.stderr)
+        long = self.folder / ("x" * 300 + ".obj")
+        self.assertIn("shorter", run("deform", self.model, self.cage, posed, "-o", long).stderr)
+
+    def test_parts_are_cleared_away_by_signals(self):
+        # Where the file system has nameless files there are no parts at all; a killed one is passed by.
+        part = self.file(".cagewright-0.part", "of a program that was killed")
+        out = self.folder / "d.obj"
+        self.assertEqual(run("deform", self.model, self.cage, self.cage, "-o", out).returncode, DONE)
+        self.assertEqual(part.read_text(), "of a program that was killed")
+        self.assertEqual(self.names(), [".cagewright-0.part", "cage.obj", "d.obj", "model.obj"])
+
     def test_inputs_are_not_written_over(self):
         (self.folder / "link.obj").symlink_to("model.obj")
         before = self.model.read_bytes(), self.cage.read_bytes()
@@ -222,6 +268,15 @@ class Writing(InAFolder):
                 self.assertEqual(out.read_text().count("\nf "), 6)
                 self.assertIn("v -1 -1 -1", out.read_text().replace(".0", ""))
             model.unlink()
+
+    def test_names_that_are_no_utf8_are_written_to(self):
+        folder = os.fsencode(self.folder)
+        for command in (("deform", self.model, self.cage, self.cage), ("generate", self.model, "--method", "boxes", "--depth", 0)):
+            out = folder + b"/b\xe4d\xff.obj"
+            made = run(*command, "-o", out, "--json", folder + b"/r\xe4.json") if command[0] == "generate" else run(*command, "-o", out)
+            self.assertEqual(made.returncode, DONE, made.stderr)
+            self.assertTrue(os.path.exists(out))
+            os.unlink(out)
 
 
 if __name__ == "__main__":
