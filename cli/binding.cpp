@@ -2,6 +2,7 @@
 #include "load.h"
 #include "report/cage_words.h"
 
+#include <cagewright/deform/choose_coordinates.h>
 #include <cagewright/validate/every_cutting.h>
 #include <cagewright/validate/validate_cage.h>
 
@@ -19,7 +20,7 @@ Error about_file(const std::string& path, const Error& error) {
 void add_binding_options(CLI::App& command, BindingOptions& options) {
   command.add_option("model", options.model, "The model")->required();
   command.add_option("cage", options.cage, "Its cage at rest: closed, round the model")->required();
-  add_coordinate_options(command, options.coordinates);
+  add_coordinate_options(command, options.coordinates, true);
   command.add_flag("--strict", options.strict,
                    "Stop with exit code 1 unless the cage is valid for the model; else only warn");
   add_pose_option(command, options.choice);
@@ -61,6 +62,32 @@ Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Se
 int fail_of_judge(const Error& error) {
   const int exit_code = fail(error);
   return error.code == ErrorCode::no_valid_cage ? found_faults : exit_code;
+}
+
+Result<CoordinateSettings> chosen_settings(const BindingOptions& options,
+                                           const ModelAndCage& meshes, const Session& session) {
+  if (options.coordinates.kind != best_kind) {
+    return settings_of(options.coordinates);
+  }
+  const Result<ChosenCoordinates> chosen =
+      choose_coordinates(meshes.cage, meshes.bound.mesh.positions, session.progress());
+  if (!chosen) {
+    return chosen.error().code == ErrorCode::cancelled ? chosen.error()
+                                                       : about_file(options.cage, chosen.error());
+  }
+  for (const TriedKind& tried : chosen->tried) {
+    session.say(
+        tried.refusal.empty()
+            ? fmt::format("  {:<20} bend {:.2f} %, twist {:.2f} %, drag across gaps {:.2f} %\n",
+                          tried.kind->name, 100 * tried.bend, 100 * tried.twist, 100 * tried.drag)
+            : fmt::format("  {:<20} cannot: {}\n", tried.kind->name, tried.refusal));
+  }
+  session.say(fmt::format("{}: {} coordinates, of all the least errors in sum, in % of the model's "
+                          "diagonal\n",
+                          options.cage, chosen->settings.kind().name));
+  CoordinateArguments named = options.coordinates;
+  named.kind = chosen->settings.kind().name;
+  return settings_of(named);
 }
 
 Result<std::shared_ptr<const Coordinates>> make_coordinates(const PolygonMesh& cage,

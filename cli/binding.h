@@ -39,6 +39,11 @@ Status judge(const ModelAndCage& meshes, const BindingOptions& options, const Se
 /// fail() for what judge() returns: a cage that is not valid is a finding.
 int fail_of_judge(const Error& error);
 
+/// What was asked for; with --coordinates auto the kind that carries the model best, of which is
+/// said why. Errors: invalid_option, invalid_cage, cancelled.
+Result<CoordinateSettings> chosen_settings(const BindingOptions& options,
+                                           const ModelAndCage& meshes, const Session& session);
+
 /// The cage ready for binding; it may be open, of which judge() has warned.
 Result<std::shared_ptr<const Coordinates>> make_coordinates(const PolygonMesh& cage,
                                                             const CoordinateSettings& settings,

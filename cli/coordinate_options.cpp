@@ -38,16 +38,20 @@ Status set_given(const CoordinateArguments& arguments, CoordinateSettings& setti
 
 } // namespace
 
-void add_coordinate_options(CLI::App& command, CoordinateArguments& arguments) {
+void add_coordinate_options(CLI::App& command, CoordinateArguments& arguments, bool offer_best) {
   std::vector<std::string> names;
   for (const CoordinateKind* kind : coordinate_kinds()) {
     names.emplace_back(kind->name);
+  }
+  if (offer_best) {
+    names.emplace_back(best_kind);
   }
   arguments.given =
       command
           .add_option("--coordinates", arguments.kind,
                       "How the model follows its cage; 'cagewright coordinates' tells what each "
-                      "is good for")
+                      "is good for" +
+                          std::string(offer_best ? "; auto tries all, and says why" : ""))
           ->check(CLI::IsMember(names))
           ->option_text("NAME [" + arguments.kind + "]");
   for (const CoordinateOption* option : coordinate_options()) {
@@ -80,7 +84,8 @@ Status take_settings(const CoordinateArguments& arguments, StoredWeights& stored
     stored.settings = *std::move(settings);
     return success();
   }
-  if (arguments.given->count() > 0 && arguments.kind != stored.settings.kind().name) {
+  if (arguments.given->count() > 0 && arguments.kind != best_kind &&
+      arguments.kind != stored.settings.kind().name) {
     return Error{ErrorCode::mismatch,
                  fmt::format("the weights are {} coordinates, not {}; bind the model again",
                              stored.settings.kind().name, arguments.kind)};

@@ -10,6 +10,7 @@
 
 #include <list>
 #include <string>
+#include <string_view>
 
 namespace cagewright::cli {
 
@@ -26,8 +27,13 @@ struct CoordinateArguments {
   std::list<Value> values; // a list: CLI11 keeps references to the texts
 };
 
+/// The word for the kind that carries the model best.
+constexpr std::string_view best_kind = "auto";
+
 /// Declares --coordinates and the options of all kinds.
-void add_coordinate_options(CLI::App& command, CoordinateArguments& arguments);
+/// \param offer_best  --coordinates auto is allowed, too: see chosen_settings()
+void add_coordinate_options(CLI::App& command, CoordinateArguments& arguments,
+                            bool offer_best = false);
 
 /// What was asked for. Warns of options that the kind does not have.
 /// Errors: invalid_option.

@@ -81,7 +81,9 @@ int run(const Options& options, const Session& session) {
   if (!format) {
     return fail(format.error());
   }
-  const Result<CoordinateSettings> settings = settings_of(options.binding.coordinates);
+  const bool is_best = options.binding.coordinates.kind == best_kind;
+  Result<CoordinateSettings> settings =
+      is_best ? CoordinateSettings() : settings_of(options.binding.coordinates);
   if (!settings) {
     return fail(settings.error());
   }
@@ -91,6 +93,12 @@ int run(const Options& options, const Session& session) {
   }
   if (Status status = judge(*meshes, options.binding, session); !status) {
     return fail_of_judge(status.error());
+  }
+  if (is_best) {
+    settings = chosen_settings(options.binding, *meshes, session);
+    if (!settings) {
+      return fail(settings.error());
+    }
   }
   const auto start = std::chrono::steady_clock::now();
   const auto coordinates = make_coordinates(meshes->cage, *settings, options.binding, session);

@@ -219,7 +219,7 @@ Result<Mover> stored_mover(const Options& options, const ModelAndCage& meshes) {
 /// Moves without stored weights.
 Result<Mover> direct_mover(const Options& options, const ModelAndCage& meshes,
                            const Session& session) {
-  const Result<CoordinateSettings> settings = settings_of(options.binding.coordinates);
+  const Result<CoordinateSettings> settings = chosen_settings(options.binding, meshes, session);
   if (!settings) {
     return settings.error();
   }

@@ -1,6 +1,7 @@
 #include <cagewright/deform/following.h>
 
 #include "core/parallel.h"
+#include "deform/some_points.h"
 #include "spatial/bvh.h"
 #include <cagewright/coordinates/aligned_buffer.h>
 #include <cagewright/mesh/measures.h>
@@ -15,7 +16,6 @@
 namespace cagewright {
 namespace {
 
-constexpr std::size_t most_points = 4096;
 constexpr double high_part = 0.95;
 constexpr std::size_t tile_points = 16; // at once, as Coordinates takes them
 
@@ -41,16 +41,6 @@ bool sees(const TriangleBvh& cage, const Vec3& x, const Vec3& vertex) {
   constexpr double ends = 1e-9; // of the segment: the faces that meet there do not count
   const Vec3 way = vertex - x;
   return way.isZero(0) || !cage.first_hit(x + ends * way, way, 1 - 2 * ends);
-}
-
-/// Evenly spread over their order.
-std::vector<Vec3> some_of(std::span<const Vec3> points) {
-  const std::size_t count = std::min(points.size(), most_points);
-  std::vector<Vec3> some;
-  for (std::size_t i = 0; i < count; ++i) {
-    some.push_back(points[i * points.size() / count]);
-  }
-  return some;
 }
 
 /// How a triangle was stretched, and its area at rest; 0 area: it had none.
@@ -107,7 +97,7 @@ Result<UnseenShare> unseen_share(const PolygonMesh& cage, const Coordinates& coo
   const TriangleMesh triangles = to_triangle_mesh(cage);
   const TriangleBvh bvh{TriangleView(triangles)};
   const std::vector<Influence> of_vertex = influences(*coordinates.rule());
-  const std::vector<Vec3> some = some_of(points);
+  const std::vector<Vec3> some = some_points(points);
   std::vector<double> shares(some.size(), -1); // -1: no weights
   const std::size_t tiles = (some.size() + tile_points - 1) / tile_points;
   parallel_for(0, tiles, 1, [&](std::size_t tile) {

@@ -544,6 +544,19 @@ class Bind(InAFolder):
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assert_near(rows(self.out, "v"), rows(direct, "v"), 1e-6)
 
+    def test_takes_the_best_kind_and_says_why(self):
+        told = self.folder / "told.json"
+        best = self.folder / "best.npz"
+        result = run("bind", self.model, self.rest, "-o", best, "--coordinates", "auto", "--json", told)
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        kind = json.loads(told.read_text())["coordinates"]
+        self.assertIn(f"{kind} coordinates", result.stdout)
+        self.assertIn("drag across gaps", result.stdout)
+        for more in ([], ["--weights", best]):
+            result = run("deform", self.model, self.rest, self.pose, "-o", self.out, "--coordinates", "auto", *more)
+            self.assertEqual(result.returncode, DONE, result.stderr)
+            self.assert_near(rows(self.out, "v"), [[x + 2, y, z] for x, y, z in rows(self.model, "v")], 1e-5)
+
     def test_says_in_figures_what_was_bound(self):
         for kind in ("mean_value", "quad_green"):
             told = self.folder / "told.json"
