@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <queue>
+#include <span>
 #include <utility>
 
 namespace cagewright {
@@ -17,8 +18,11 @@ namespace {
 
 constexpr int voxels_along_diagonal = 96;
 constexpr double nearest = 0.03;      // of the diagonal: what is nearer counts as touching
-constexpr double farthest = 0.2;      // of the diagonal: what is farther is not beside each other
-constexpr double detour = 3;          // times as far along the surface
+constexpr double farthest = 0.35;     // of the diagonal: what is farther is not beside each other
+constexpr double detour = 2;          // times as far through the model: less than 60 degrees apart
+constexpr double narrow_width = 0.2;  // of the diagonal: a gap at most so wide is a narrow one ...
+constexpr double narrow_detour = 3;   // ... if the way round it is so many times as long
+constexpr double few_narrow = 64;     // points: the share of fewer is chance
 constexpr double least_detour = 0.25; // of the diagonal
 constexpr int block = 4;              // voxels: how finely ways are told apart
 
@@ -170,6 +174,8 @@ private:
   std::vector<std::pair<Index, double>> neighbors_; // and how far
 };
 
+enum class Gap : std::uint8_t { none, wide, narrow };
+
 /// A free voxel between two clumps, so far apart in voxels.
 struct Crossing {
   Index from = 0;
@@ -199,14 +205,14 @@ public:
     space.corner_ = grid_.origin;
     space.size_ = grid_.size;
     space.rows_ = {grid_.dims[1], grid_.dims[2]};
-    std::vector<std::uint8_t> between(grid_.kinds.size(), 0);
-    for (const std::size_t voxel : voxels_between()) {
-      between[voxel] = 1;
-    }
+    const std::vector<Gap> gaps = gaps_at_voxels();
     space.first_.assign(1, 0);
-    for (std::size_t i = 0; i < between.size(); ++i) {
-      if (between[i] != 0) {
+    space.narrow_before_.assign(1, 0);
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+      if (gaps[i] != Gap::none) {
         space.places_.push_back(grid_.center(i).x());
+        space.narrow_before_.push_back(space.narrow_before_.back() +
+                                       (gaps[i] == Gap::narrow ? 1 : 0));
       }
       if ((i + 1) % static_cast<std::size_t>(grid_.dims[0]) == 0) {
         space.first_.push_back(space.places_.size());
@@ -216,7 +222,8 @@ public:
   }
 
 private:
-  [[nodiscard]] std::vector<std::size_t> voxels_between() const {
+  /// The narrowest gap that each voxel is in.
+  [[nodiscard]] std::vector<Gap> gaps_at_voxels() const {
     const Ways ways(grid_);
     std::vector<Crossing> crossings;
     for (const Cell& line : lines()) {
@@ -235,28 +242,40 @@ private:
       }
     }
     starts.push_back(crossings.size());
-    std::vector<std::uint8_t> is_far(crossings.size(), 0);
+    std::vector<Gap> gap(crossings.size(), Gap::none);
     parallel_for(0, starts.size() - 1, 1, progress_, [&](std::size_t s) {
       double reach = 0;
       for (std::size_t i = starts[s]; i < starts[s + 1]; ++i) {
-        reach = std::max(reach, least_way(crossings[i]));
+        reach = std::max(reach, longest_asked(crossings[i]));
       }
       const std::vector<double> lengths = ways.lengths_from(crossings[starts[s]].from, reach);
       for (std::size_t i = starts[s]; i < starts[s + 1]; ++i) {
-        is_far[i] = lengths[crossings[i].to] >= least_way(crossings[i]) ? 1 : 0;
+        gap[i] = gap_of(crossings[i], lengths[crossings[i].to]);
       }
     });
-    std::vector<std::size_t> found;
+    std::vector<Gap> at_voxels(grid_.kinds.size(), Gap::none);
     for (std::size_t i = 0; i < crossings.size(); ++i) {
-      if (is_far[i] != 0) {
-        found.push_back(crossings[i].voxel);
-      }
+      Gap& here = at_voxels[crossings[i].voxel];
+      here = std::max(here, gap[i]);
     }
-    return found;
+    return at_voxels;
   }
 
-  static double least_way(const Crossing& crossing) {
-    return std::max(detour * crossing.across, least_detour * voxels_along_diagonal);
+  static bool may_be_narrow(const Crossing& crossing) {
+    return crossing.across <= narrow_width * voxels_along_diagonal;
+  }
+
+  /// Ways that are longer need not be known.
+  static double longest_asked(const Crossing& crossing) {
+    return std::max((may_be_narrow(crossing) ? narrow_detour : detour) * crossing.across,
+                    least_detour * voxels_along_diagonal);
+  }
+
+  static Gap gap_of(const Crossing& crossing, double way) {
+    if (way < std::max(detour * crossing.across, least_detour * voxels_along_diagonal)) {
+      return Gap::none;
+    }
+    return way >= longest_asked(crossing) && may_be_narrow(crossing) ? Gap::narrow : Gap::wide;
   }
 
   /// How many steps of the line lead from each voxel to the next one that is occupied: 0 if none
@@ -335,13 +354,14 @@ std::vector<Vec3> SpaceBetween::points() const {
   return result;
 }
 
-long SpaceBetween::behind(const std::array<Vec3, 3>& t) const {
+SpaceBetween::Count SpaceBetween::behind_of(const std::array<Vec3, 3>& t) const {
+  Count sum;
   if (count_ == 0) {
-    return 0;
+    return sum;
   }
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
   if (normal.x() == 0 || !normal.allFinite()) {
-    return 0;
+    return sum;
   }
   std::array<int, 2> low{};
   std::array<int, 2> high{};
@@ -354,7 +374,6 @@ long SpaceBetween::behind(const std::array<Vec3, 3>& t) const {
     low[a] = std::max(0, place(least) - 1); // rounding
     high[a] = std::min(rows_[a], place(most) + 1);
   }
-  long sum = 0;
   for (int k = low[1]; k < high[1]; ++k) {
     for (int j = low[0]; j < high[0]; ++j) {
       const std::size_t begin = first_[row(j, k)];
@@ -370,24 +389,38 @@ long SpaceBetween::behind(const std::array<Vec3, 3>& t) const {
       const double x =
           t[0].x() -
           (normal.y() * (p.y() - t[0].y()) + normal.z() * (p.z() - t[0].z())) / normal.x();
-      const auto before = std::lower_bound(places_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                           places_.begin() + static_cast<std::ptrdiff_t>(end), x) -
-                          (places_.begin() + static_cast<std::ptrdiff_t>(begin));
-      sum += left ? before : -before;
+      const std::span<const double> row_places = std::span(places_).subspan(begin, end - begin);
+      const auto before = std::ranges::lower_bound(row_places, x) - row_places.begin();
+      const long narrow_ones =
+          narrow_before_[begin + static_cast<std::size_t>(before)] - narrow_before_[begin];
+      sum.all += left ? before : -before;
+      sum.narrow += left ? narrow_ones : -narrow_ones;
     }
   }
   return sum;
+}
+
+long SpaceBetween::behind(const std::array<Vec3, 3>& triangle) const {
+  return behind_of(triangle).all;
 }
 
 double SpaceBetween::share_inside(TriangleView surface) const {
   if (count_ == 0) {
     return 0;
   }
-  long sum = 0;
+  Count sum;
   for (const Triangle& t : surface.triangles) {
-    sum += behind({surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]});
+    const Count behind =
+        behind_of({surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]});
+    sum.all += behind.all;
+    sum.narrow += behind.narrow;
   }
-  return std::clamp(static_cast<double>(sum) / static_cast<double>(count_), 0.0, 1.0);
+  const auto share = [](long inside, double count) {
+    return std::clamp(static_cast<double>(inside) / count, 0.0, 1.0);
+  };
+  const double all = share(sum.all, static_cast<double>(count_));
+  const auto narrow_ones = static_cast<double>(narrow_before_.back());
+  return narrow_ones < few_narrow ? all : std::max(all, share(sum.narrow, narrow_ones));
 }
 
 } // namespace cagewright

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace cagewright {
@@ -46,6 +47,51 @@ TEST(SpaceBetween, KnowsWhatIsJoined) {
   // A sheet between the legs, from the top to the middle. Near the top the way is not far.
   const TriangleMesh sheet = bar({-1, -1, 8}, {1, 3, 16});
   EXPECT_NEAR(space.share_inside(sheet), 0.35, 0.1);
+}
+
+TEST(SpaceBetween, SeesSheetsBetweenTheTipsOfSpreadArms) {
+  // Eight arms of a length of 10 all round, as of an octopus: between two tips the gap is a quarter
+  // of the diagonal, and the way round it 2.6 times as long.
+  TriangleMesh star;
+  for (int k = 0; k < 8; ++k) {
+    const double angle = k * std::numbers::pi / 4;
+    TriangleMesh arm = bar({0, -0.5, -0.5}, {10, 0.5, 0.5});
+    for (Vec3& p : arm.positions) {
+      p = Vec3(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
+               std::sin(angle) * p.x() + std::cos(angle) * p.y(), p.z());
+    }
+    star = k == 0 ? arm : joined(star, arm);
+  }
+  const SpaceBetween space(star);
+  ASSERT_GT(space.count(), 100U);
+  // A sheet over three arms from tip to tip: two gaps of eight.
+  TriangleMesh sheet = make_cube();
+  sheet.positions = {};
+  for (const double z : {-1.0, 1.0}) {
+    for (const double angle : {-1.0, 0.0, 1.0}) {
+      sheet.positions.emplace_back(10 * std::cos(angle * std::numbers::pi / 4),
+                                   10 * std::sin(angle * std::numbers::pi / 4), z);
+    }
+    sheet.positions.emplace_back(0, 0, z);
+  }
+  sheet.triangles = {{2, 1, 0}, {3, 2, 0}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+                     {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+  EXPECT_NEAR(space.share_inside(sheet), 0.25, 0.05);
+  EXPECT_EQ(space.share_inside(star), 0);
+}
+
+TEST(SpaceBetween, WideGapsDoNotMakeUpForNarrowOnes) {
+  // Trousers, and two long arms that leave the hips 45 degrees apart: the free space between those
+  // is far larger than between the legs, and still the legs are joined.
+  TriangleMesh arms = joined(bar({0, 0, 15}, {16, 2, 17}), bar({0, 0, 15}, {16, 2, 17}));
+  for (std::size_t v = 0; v < arms.positions.size() / 2; ++v) {
+    const Vec3 p = arms.positions[v] - Vec3(0, 0, 16);
+    const double h = std::numbers::sqrt2 / 2;
+    arms.positions[v] = Vec3(h * (p.x() - p.z()), p.y(), 16 + h * (p.x() + p.z()));
+  }
+  const SpaceBetween space(joined(trousers(), arms));
+  const TriangleMesh sheet = bar({-1, -1, 0}, {1, 3, 16});
+  EXPECT_GT(space.share_inside(sheet), 0.9);
 }
 
 TEST(SpaceBetween, IsNotInOneConvexBodyNorInAShallowDent) {

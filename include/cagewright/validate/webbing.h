@@ -17,9 +17,11 @@ namespace cagewright {
 ///
 /// A free voxel of a grid (96 along the diagonal of the model's box) is one of them if on one of
 /// 13 lines through it, along axes and diagonals, it is in the middle third between two voxels of
-/// the model; these are from 3 % to 20 % of the diagonal apart; and the way from one to the other
-/// through the model is at least three times as long, and a quarter of the diagonal. Pieces of a
-/// model that do not touch are as far apart as can be.
+/// the model; these are from 3 % to 35 % of the diagonal apart; and the way from one to the other
+/// through the model is at least twice as long, as between limbs less than 60 degrees apart, and a
+/// quarter of the diagonal. Pieces of a model that do not touch are as far apart as can be. Those
+/// are in *narrow* gaps where the two are at most 20 % of the diagonal apart, and the way is three
+/// times as long: between legs, while the others are between the tips of spread arms, too.
 ///
 /// What is inside and outside is decided as for every grid of voxels: open and dirty models have
 /// such a space too. The same points on any number of threads.
@@ -42,13 +44,21 @@ public:
   /// closed surface, oriented outward, is the number of points inside.
   [[nodiscard]] long behind(const std::array<Vec3, 3>& triangle) const;
 
-  /// The share of the points that is inside the surface: 0 if there are no points.
+  /// The share of the points that is inside the surface, or of those in narrow gaps if that is
+  /// greater and they are more than a few: what is wide does not make up for legs that are joined.
+  /// 0 if there are no points.
   ///
   /// Cost: O(F) and the area of the faces in voxels.
   [[nodiscard]] double share_inside(TriangleView surface) const;
 
 private:
   friend class SpaceBetweenFinder;
+
+  struct Count {
+    long all = 0;
+    long narrow = 0;
+  };
+  [[nodiscard]] Count behind_of(const std::array<Vec3, 3>& triangle) const;
 
   /// Points with the same y and z: places_[first[row] .. first[row + 1]), ascending.
   [[nodiscard]] std::size_t row(int j, int k) const {
@@ -61,7 +71,8 @@ private:
   double size_ = 0;
   std::array<int, 2> rows_ = {0, 0}; // along y and z
   std::vector<std::size_t> first_;
-  std::vector<double> places_; // x
+  std::vector<double> places_;      // x
+  std::vector<long> narrow_before_; // by place, and at the end: those in narrow gaps before it
 };
 
 } // namespace cagewright
