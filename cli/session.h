@@ -70,7 +70,8 @@ void warn(std::string_view message);
 #define CAGEWRIGHT_COMMANDS(X)                                                                     \
   X(generate)                                                                                      \
   X(batch)                                                                                         \
-  X(check) X(compare) X(info) X(bind) X(deform) X(coordinates) X(convert) X(weld)                  \
+  X(check)                                                                                         \
+  X(compare) X(info) X(bind) X(deform) X(coordinates) X(convert) X(weld)                           \
       CAGEWRIGHT_RENDER_COMMAND(X) X(view)
 #define CAGEWRIGHT_DECLARE(name) void add_##name(CLI::App& app, Session& session);
 CAGEWRIGHT_COMMANDS(CAGEWRIGHT_DECLARE)

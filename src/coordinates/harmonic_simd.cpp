@@ -21,7 +21,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -225,7 +224,7 @@ private:
   [[nodiscard]] double depth(int strip) const {
     constexpr double inner = 0.3;
     constexpr double ratio = 0.25;
-    return strip == cut_.strips ? 0 : inner * std::pow(ratio, strip);
+    return strip == cut_.strips ? 0 : inner * maths::pow(ratio, static_cast<double>(strip));
   }
 
   [[nodiscard]] Vec3 corner(std::size_t t, std::size_t i, double in_from_edges) const {
@@ -444,7 +443,7 @@ public:
 
 private:
   /// Those of the unknowns of one triangle of the cage.
-  void add_rows(const std::vector<PanelSample>& places, PositiveSystem& system) const {
+  void add_rows(const std::vector<PanelSample>& places, PositiveSystem& system) {
     std::vector<Index> own; // the unknowns of this triangle
     std::vector<CageSample> samples;
     for (const PanelSample& place : places) {
@@ -501,8 +500,7 @@ private:
   /// Of two unknowns the one on the smaller panels is integrated with: the potential of a large
   /// panel is smooth over a small one, not the other way round. Of two alike both are, by halves;
   /// so that nothing depends on their order.
-  void put_entry(std::size_t tested_by, std::size_t unknown, double value,
-                 PositiveSystem& system) const {
+  void put_entry(std::size_t tested_by, std::size_t unknown, double value, PositiveSystem& system) {
     constexpr double alike = 1e-6;
     const double ratio = panels_.size_of[tested_by] / panels_.size_of[unknown];
     double& entry = system.entry(std::max(tested_by, unknown), std::min(tested_by, unknown));
@@ -510,7 +508,8 @@ private:
       entry = value;
     } else if (ratio <= 1 + alike) {
       // The two halves may come at once; their sum does not depend on which is the first.
-      std::atomic_ref(entry).fetch_add(value / 2, std::memory_order_relaxed);
+      const std::lock_guard lock(halves_[unknown % halves_.size()]);
+      entry += value / 2;
     }
   }
 
@@ -567,6 +566,7 @@ private:
   const Coordinates& green_;
   Panels panels_;
   StripMatrix q_;
+  std::array<std::mutex, 64> halves_; // for entries that two threads add to, by their unknowns
 };
 
 class HarmonicCoordinates : public Coordinates {
@@ -832,7 +832,7 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
       return coarse.error();
     }
     const auto share = [](std::size_t at) {
-      return 1 - 0.9 * std::pow(0.4, static_cast<double>(at));
+      return 1 - 0.9 * maths::pow(0.4, static_cast<double>(at));
     };
     const std::size_t round = level > usual_level ? level - usual_level : 0;
     Result<std::shared_ptr<HarmonicCoordinates>> fine =

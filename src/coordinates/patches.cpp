@@ -1,5 +1,6 @@
 #include "coordinates/patches.h"
 
+#include "core/maths.h"
 #include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
@@ -16,8 +17,8 @@ std::vector<std::pair<double, double>> gauss(std::size_t count) {
   std::vector<std::pair<double, double>> rule;
   const auto n = static_cast<long double>(count);
   for (std::size_t i = 0; i < count; ++i) {
-    long double x = std::cos(std::numbers::pi_v<long double> *
-                             (static_cast<long double>(i) + 0.75L) / (n + 0.5L));
+    long double x = maths::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) /
+                               (static_cast<double>(count) + 0.5));
     long double slope = 1;
     for (int step = 0; step < 10; ++step) { // Newton's method
       long double last = 1;

@@ -239,7 +239,7 @@ private:
       const Vec3 outward = along.cross(face.normal);
       const double rho = outward.dot(from);
       const double tau = along.dot(from);
-      const double line = std::max(std::hypot(rho, height), 1e-150);
+      const double line = std::max(std::sqrt(rho * rho + height * height), 1e-150);
       const scalar::EdgeView<double> view{scalar::angle_of(length * line, from.dot(to)), line, tau,
                                           tau + length};
       across += view.angle / line * outward;

@@ -82,7 +82,8 @@ public:
     const double nearest = std::sqrt(near.front().first);
     for (std::size_t i = 0; i < count; ++i) {
       // Nearer ones count more; the least distance keeps one from counting alone.
-      const double weight = std::pow(std::sqrt(near[i].first) + nearest + 1e-30, -2);
+      const double distance = std::sqrt(near[i].first) + nearest + 1e-30;
+      const double weight = 1 / (distance * distance);
       for (const auto& [node, share] : shares_[near[i].second]) {
         sum[node] += weight * share;
       }
