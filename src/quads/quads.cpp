@@ -12,6 +12,9 @@
 #include <cagewright/mesh/triangulate.h>
 
 #include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
 
 namespace cagewright {
 namespace {
@@ -47,8 +50,12 @@ constexpr double wide_angle = 175;
 struct Setting {
   const ModelSurface& surface;
   const Objective& objective;
-  const DirectionField& field;
   const QuadOptions& options;
+  double room = 1; ///< how far the cage moves off the model meanwhile, in what the options say
+
+  [[nodiscard]] QuadGuard strict() const {
+    return {surface, options.clearance * surface.diagonal, options.limits};
+  }
 };
 
 /// Pairs and tiles the faces of a cage that has room, and moves its vertices, in rounds from much
@@ -57,6 +64,7 @@ struct Setting {
 /// \param lone  what a triangle costs: see FaceWishes
 QuadCage with_quads(QuadCage cage, const Setting& setting, double lone, const Progress& progress) {
   const QuadOptions& options = setting.options;
+  const DirectionField field(cut(cage));
   const double clearance = options.clearance * setting.surface.diagonal;
   constexpr int rounds = 6;
   for (int round = 0; round < rounds; ++round) {
@@ -77,11 +85,11 @@ QuadCage with_quads(QuadCage cage, const Setting& setting, double lone, const Pr
       split_unfit(cage, limits);
     }
     cage.renumber_faces();
-    pair_triangles(cage, guard, setting.field, taste);
-    retile(cage, guard, setting.field, taste, part.part(0, 0.5));
+    pair_triangles(cage, guard, field, taste);
+    retile(cage, guard, field, taste, part.part(0, 0.5));
     cage.renumber_faces();
     RelaxQuadsOptions settle;
-    settle.keep = options.clearance + slack * options.room;
+    settle.keep = options.clearance + slack * setting.room * options.room;
     settle.steps = is_last ? 8 : 4;
     relax_quads(cage, guard, setting.objective, settle, part.part(0.5, 1));
   }
@@ -92,8 +100,7 @@ QuadCage with_quads(QuadCage cage, const Setting& setting, double lone, const Pr
 /// The first of several tries that has enough quads, each with triangles dearer than in the last:
 /// there are fewer of them then, and quads that need more bending. If none has, the one with most.
 QuadCage with_enough_quads(const QuadCage& roomy, const Setting& setting,
-                           const Progress& progress) {
-  constexpr std::array lone = {4.0, 6.0, 8.0, 12.0};
+                           std::span<const double> lone, const Progress& progress) {
   QuadCage best = roomy;
   double most = -1;
   double done = 0;
@@ -105,6 +112,64 @@ QuadCage with_enough_quads(const QuadCage& roomy, const Setting& setting,
     const double share = report_of(cage.to_polygons()).share;
     if (share > most) {
       most = share;
+      best = std::move(cage);
+    }
+  }
+  return best;
+}
+
+constexpr std::array triangles_dearer = {4.0, 6.0, 8.0, 12.0}; // from try to try
+
+/// Quads made with the setting's room, in so many tries at most, as round as they get.
+QuadCage quads_with_room(QuadCage cage, const Setting& setting, std::size_t tries,
+                         const Progress& progress) {
+  const QuadGuard strict = setting.strict();
+  const double clearance = setting.options.clearance;
+  relax_quads(cage, strict, setting.objective,
+              {.steps = 3, .keep = clearance + setting.room * setting.options.room},
+              progress.part(0, 0.1));
+  cage = with_enough_quads(cage, setting, std::span(triangles_dearer).first(tries),
+                           progress.part(0.1, 0.95));
+  settle_shapes(cage, strict, setting.objective, {.keep = clearance}, progress.part(0.95, 1));
+  return cage;
+}
+
+double objective_of(QuadCage cage, const Setting& setting) {
+  return relax_quads(cage, setting.strict(), setting.objective, {.steps = 0});
+}
+
+/// What a cage of quads costs: too few of them are worse than a cage that is a little looser.
+double cost_of(const QuadCage& cage, const Setting& setting) {
+  constexpr double at_once = 0.15;
+  constexpr double by_share = 2;
+  const double missing = shape_limits::enough_quads - report_of(cage.to_polygons()).share;
+  return objective_of(cage, setting) * (1 + (missing > 0 ? at_once + by_share * missing : 0));
+}
+
+/// Quads with all the room that the options give, which leads to the best shapes. Where they come
+/// out much looser than the triangles they were made of, thin limbs grew together in so much room:
+/// then the cheapest of these and of quads made nearer to the model.
+QuadCage best_of_rooms(const QuadCage& start, const Setting& setting, const Progress& progress) {
+  constexpr double much_looser = 1.25;
+  constexpr double usual = 0.8; // of the time: seldom are there other rooms
+  constexpr std::array less_room = {0.6, 0.3};
+  QuadCage best = quads_with_room(start, setting, triangles_dearer.size(), progress.part(0, usual));
+  if (objective_of(best, setting) <= much_looser * objective_of(start, setting)) {
+    return best;
+  }
+  double least = cost_of(best, setting);
+  double done = usual;
+  for (const double room : less_room) {
+    const double then = (done + 1) / 2;
+    Setting nearer = setting;
+    nearer.room = room;
+    QuadCage cage = quads_with_room(start, nearer, 1, progress.part(done, then));
+    done = then;
+    if (progress.cancelled()) {
+      break;
+    }
+    if (const double cost = cost_of(cage, setting); cost < least) {
+      least = cost;
       best = std::move(cage);
     }
   }
@@ -202,18 +267,9 @@ Result<Quadrangulated> make_quads(TriangleView start, const ModelSurface& surfac
   if (!border_is_in_plane(cage)) {
     return Error{ErrorCode::invalid_cage, "the cage to make quads of is open"};
   }
-  const double clearance = options.clearance * surface.diagonal;
   const double face_area = surface_area(start) / static_cast<double>(start.triangles.size());
   const Objective objective(surface, weights_for(model, options, face_area));
-  RelaxQuadsOptions make_room;
-  make_room.steps = 3;
-  make_room.keep = options.clearance + options.room;
-  const QuadGuard strict(surface, clearance, options.limits);
-  relax_quads(cage, strict, objective, make_room, progress.part(0, 0.1));
-  const DirectionField field(cut(cage));
-
-  cage = with_enough_quads(cage, {surface, objective, field, options}, progress.part(0.1, 0.95));
-  settle_shapes(cage, strict, objective, {.keep = options.clearance}, progress.part(0.95, 1));
+  cage = best_of_rooms(cage, {surface, objective, options}, progress);
   if (progress.cancelled()) {
     return Error::cancelled();
   }
