@@ -113,7 +113,7 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
         InputError: no cage can be made of such a model or with such options. NoValidCage: none was found.
         Cancelled: progress returned False. KeyboardInterrupt: within half a second, with nothing half done.
 
-    About a second for 100 vertices round 100,000 triangles on two cores; quads take a few times as long.
+    One to four seconds for 100 vertices round 50,000 triangles on two cores; quads take a few times as long.
 
     >>> V, F = cagewright.read_mesh("armadillo.off")
     >>> cage = cagewright.generate(V, F, num_vertices=60, quads=True)

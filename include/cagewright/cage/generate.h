@@ -23,7 +23,7 @@ namespace cagewright {
 /// Errors: unfit_model (no faces, not finite, all on one line, too far from the origin for its
 /// size), invalid_option (out of range, or two that contradict each other), no_valid_cage,
 /// too_large, cancelled.
-/// Cost: about a second for 100 vertices round a model of 100,000 triangles, on two cores; with
+/// Cost: one to four seconds for 100 vertices round a model of 50,000 triangles, on two cores; with
 /// quads a few times as much. The same result on any number of threads.
 Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& options = {},
                                const Progress& progress = {});
