@@ -85,6 +85,20 @@ TEST(MinimumBox, OfOnePointOrNoneHasNoExtent) {
   EXPECT_EQ(minimum_box({}).volume(), 0);
 }
 
+TEST(MinimumBox, OfManyPointsOfASphereIsFoundSoon) {
+  // All boxes are alike: a search that goes on for each little gain takes minutes.
+  std::vector<Vec3> points;
+  Random random(1);
+  while (points.size() < 200'000) {
+    const Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    if (p.norm() > 0.1) {
+      points.push_back(p.normalized());
+    }
+  }
+  const double volume = minimum_box(points).volume();
+  EXPECT_NEAR(volume, 8, 0.02);
+}
+
 TEST(MinimumBox, ScalesWithThePoints) {
   const auto points =
       test::moved(test::points_in_box({1, 0.8, 0.5}, 200, 8), test::rotation(8), 1, {0, 0, 0});
