@@ -51,4 +51,6 @@ set(CAGEWRIGHT_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <tbb/blocked_range.h> <
   <string_view> <utility> <variant> <vector>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(cagewright_compiler INTERFACE -fpch-preprocess) # for ccache
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+  target_compile_options(cagewright_compiler INTERFACE "SHELL:-Xclang -fno-pch-timestamp") # likewise
 endif()
