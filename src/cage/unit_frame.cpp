@@ -1,5 +1,6 @@
 #include "cage/unit_frame.h"
 
+#include "mesh/reach.h"
 #include <cagewright/mesh/measures.h>
 
 #include <string>
@@ -42,18 +43,16 @@ Result<UnitFrame> unit_frame(TriangleView model) {
     return unfit("the model has no faces; export it as a surface, not as points or curves");
   }
   for (std::size_t v = 0; v < model.positions.size(); ++v) {
-    if (!model.positions[v].allFinite()) {
+    if (!is_within_reach(model.positions[v])) {
       return unfit("vertex " + std::to_string(v) +
-                   " of the model has a coordinate that is not a finite number; repair the model");
+                   " of the model has a coordinate that is not a finite number, or beyond 1e100; "
+                   "repair the model, or scale it down");
     }
   }
   const Box3 box = bounding_box(model.positions);
   const double diag = box.diagonal().norm();
   if (!(diag > 0)) {
     return unfit("all vertices of the model coincide; check the scale it was exported with");
-  }
-  if (!std::isfinite(diag)) {
-    return unfit("the model is too large for double precision; scale it down");
   }
   if (box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() * unit_round_off >
       least_resolution * diag) {

@@ -5,7 +5,7 @@
 
 #include "improve/cage_extent.h"
 #include "improve/seam_band.h"
-#include "improve/surface_tree.h"
+#include "spatial/surface_tree.h"
 #include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>

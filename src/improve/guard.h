@@ -3,7 +3,7 @@
 #pragma once
 
 #include "improve/cage_mesh.h"
-#include "improve/surface_tree.h"
+#include "spatial/surface_tree.h"
 
 #include <vector>
 

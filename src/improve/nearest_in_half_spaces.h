@@ -2,7 +2,7 @@
 /// The smallest quadratic program: three unknowns under half spaces.
 #pragma once
 
-#include "improve/surface_tree.h"
+#include "spatial/surface_tree.h"
 
 #include <optional>
 #include <span>

@@ -120,8 +120,8 @@ bool Objective::widens_gap(const Corners& before, const Corners& after) const {
   return gap > weights_.most_gap && gap > sampled_gap(before);
 }
 
-Vec3 volume_origin(const CageMesh& cage, const Vec3& near) {
-  return cage.is_half() ? Vec3(0, near.y(), near.z()) : near;
+Vec3 volume_origin(const CageMesh& cage, const Vec3& nearby) {
+  return cage.is_half() ? Vec3(0, nearby.y(), nearby.z()) : nearby;
 }
 
 double Objective::volume_change(const CageMesh& cage, const Patch& patch) {

@@ -3,6 +3,7 @@
 
 #include "io/readers.h"
 #include "io/source.h"
+#include "mesh/reach.h"
 
 #include <algorithm>
 #include <new>
@@ -14,6 +15,37 @@ namespace {
 
 Error is_empty(const Source& source) {
   return source.error("the file is empty" + std::string(export_again));
+}
+
+/// What a reader made, unless a vertex is so far away that nothing can be said of the mesh.
+Result<PolygonMesh> within_reach(Result<PolygonMesh> mesh, const Source& source) {
+  if (!mesh) {
+    return mesh;
+  }
+  const auto far = std::ranges::find_if_not(mesh->positions, is_within_reach);
+  if (far == mesh->positions.end()) {
+    return mesh;
+  }
+  return source.error("vertex " + std::to_string(far - mesh->positions.begin()) +
+                      ", counted from 0, has a coordinate beyond 1e100, with which nothing can be "
+                      "measured; mend the vertex, or scale the model down");
+}
+
+Result<PolygonMesh> read_by(MeshFormat format, const Source& source,
+                            const std::optional<std::filesystem::path>& folder, Reading& reading) {
+  switch (format) {
+  case MeshFormat::obj:
+    return read_obj(source, reading);
+  case MeshFormat::off:
+    return read_off(source, reading);
+  case MeshFormat::ply:
+    return read_ply(source, reading);
+  case MeshFormat::stl:
+    return read_stl(source, reading);
+  case MeshFormat::gltf:
+    return read_gltf(source, folder, reading);
+  }
+  return unknown_format(source); // only for a value outside the enumeration
 }
 
 } // namespace
@@ -29,23 +61,11 @@ Result<PolygonMesh> read_as(MeshFormat format, const Source& source,
     return is_empty(source);
   }
   try {
-    switch (format) {
-    case MeshFormat::obj:
-      return read_obj(source, reading);
-    case MeshFormat::off:
-      return read_off(source, reading);
-    case MeshFormat::ply:
-      return read_ply(source, reading);
-    case MeshFormat::stl:
-      return read_stl(source, reading);
-    case MeshFormat::gltf:
-      return read_gltf(source, folder, reading);
-    }
+    return within_reach(read_by(format, source, folder, reading), source);
   } catch (const std::bad_alloc&) {
     return source.error("there is not enough memory for the mesh; simplify the model",
                         ErrorCode::too_large);
   }
-  return unknown_format(source); // only for a value outside the enumeration
 }
 
 void normalize_colors(PolygonMesh& mesh) {

@@ -2,6 +2,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "mesh/reach.h"
 #include "voxel/classify.h"
 #include "voxel/triangle_overlap.h"
 #include <cagewright/mesh/measures.h>
@@ -81,8 +82,9 @@ Result<VoxelGrid> make_grid(TriangleView mesh, const OrientedBox& frame,
   }
   Box3 extent;
   for (const Vec3& p : mesh.positions) {
-    if (!p.allFinite()) {
-      return Error{ErrorCode::unfit_model, "the model has a coordinate that is not finite"};
+    if (!is_within_reach(p)) {
+      return Error{ErrorCode::unfit_model,
+                   "the model has a coordinate that is not finite, or beyond 1e100"};
     }
     extent.extend(frame.to_local(p));
   }

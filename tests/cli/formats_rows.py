@@ -164,6 +164,9 @@ TEXT = [
      [obj(V + f"vn {word} 0 0\nvt {word} 0\n" + F) for word in ("nan", "-1.#IND", "1.#QNAN0", "1.#INF", "-nan(ind)")]),
     ("the same in a position", "refused",
      [obj(V.replace("v 1 1", f"v {word} 1") + F, refused("a.obj:3", "not a finite number")) for word in ("nan", "inf", "1.#INF", "-1.#IND", "1e400")]),
+    ("a coordinate beyond 1e100", "refused: nothing can be measured with it",
+     [obj(V.replace("v 1 1", f"v {word} 1") + F, refused("a.obj: vertex 2", "beyond 1e100")) for word in ("1e308", "-2e100")] +
+     [sample("a.stl", stl_text().replace("1", "1e150").encode(), refused("a.stl: vertex", "beyond 1e100"))]),
     ("decimal commas, thousands separators, commas between numbers",
      "refused: says which of the three it is and what to replace. Exporting with the same setting gives the same file",
      [obj(V.replace("v 1 0 0", "v 1,0 0 0") + F, refused("a.obj:2", "decimal comma", "replace ',' by '.'")),

@@ -93,6 +93,22 @@ TEST(ReadMesh, NamesFilesOfOtherKinds) {
   EXPECT_EQ(message("a.obj", ""), "the file is empty; export the model again");
 }
 
+TEST(ReadMesh, RefusesWhatNothingCanBeMeasuredWith) {
+  const auto triangle = [](const std::string& x) {
+    return read_mesh("v 0 0 0\nv 1 0 0\nv " + x + " 1 0\nf 1 2 3\n", MeshFormat::obj, "far.obj");
+  };
+  for (const char* near : {"0", "1e100", "-1e100"}) {
+    EXPECT_TRUE(triangle(near)) << near;
+  }
+  for (const char* far : {"1.1e100", "-1e308"}) {
+    const auto mesh = triangle(far);
+    ASSERT_FALSE(mesh) << far;
+    EXPECT_EQ(mesh.error().message,
+              "far.obj: vertex 2, counted from 0, has a coordinate beyond 1e100, with which "
+              "nothing can be measured; mend the vertex, or scale the model down");
+  }
+}
+
 TEST(ReadMesh, KeepsItsMessagesOnOneLineWhateverTheFileIsCalled) {
   EXPECT_EQ(read_mesh(std::filesystem::path("a\nb.obj")).error().message.substr(0, 8), "a?b.obj:");
 }

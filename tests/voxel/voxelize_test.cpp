@@ -202,7 +202,7 @@ TEST(Voxelize, RefusesWhatIsNotFinite) {
   TriangleMesh cube = make_cube();
   const OrientedBox frame = pca_box(cube.positions);
   for (const double bad :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e308}) {
     cube.positions[3].y() = bad;
     const Result<VoxelGrid> grid = voxelize(cube, frame);
     ASSERT_FALSE(grid);

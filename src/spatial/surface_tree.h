@@ -2,8 +2,8 @@
 /// The model as the improvement asks for it: how near, how clear, how high.
 #pragma once
 
-#include "improve/surface_node.h"
 #include "spatial/distance.h"
+#include "spatial/surface_node.h"
 #include <cagewright/mesh/triangle_mesh.h>
 
 #include <array>

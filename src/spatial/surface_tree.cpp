@@ -1,4 +1,4 @@
-#include "improve/surface_tree.h"
+#include "spatial/surface_tree.h"
 
 #include "core/parallel.h"
 

@@ -2,10 +2,10 @@
 // and again); the best is chosen when the program runs. Nothing is fused: all of them give the same
 // numbers.
 
-#include "improve/surface_node.h"
+#include "spatial/surface_node.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "improve/surface_node_simd.cpp"
+#define HWY_TARGET_INCLUDE "spatial/surface_node_simd.cpp"
 // AVX-512 has nothing to add to eight lanes.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3 | HWY_AVX3_DL)
 #include <hwy/foreach_target.h>
