@@ -31,7 +31,7 @@ Vec3 unit_normal(const Corners& t) {
 class Fan {
 public:
   Fan(const Guard& guard, const Objective& objective, const CageMesh& cage, Patch& patch)
-      : guard_(guard), objective_(objective), cage_(cage), patch_(patch) {
+      : guard_(guard), objective_(objective), patch_(patch) {
     const Ring ring = ring_of(patch);
     for (const auto& [a, b] : ring) {
       from_.push_back(cage.position(a));
@@ -214,7 +214,6 @@ private:
 
   const Guard& guard_;
   const Objective& objective_;
-  const CageMesh& cage_;
   Patch& patch_;
   std::vector<Vec3> from_;
   std::vector<Vec3> to_;
