@@ -4,6 +4,7 @@
 #include <cagewright/io/read_mesh.h>
 
 #include "core/random.h"
+#include "mesh/reach.h"
 #include "mesh/shapes.h"
 
 #include <gtest/gtest.h>
@@ -16,20 +17,20 @@ namespace {
 
 using test::TemporaryFolder;
 
-// Every kind of finite double: both zeros, subnormals, the ends of the range, and random bits.
+// Every kind of double that is read: both zeros, subnormals, the ends of the range, and random bits.
 PolygonMesh make_awkward_mesh() {
   PolygonMesh mesh;
   using limits = std::numeric_limits<double>;
   mesh.positions = {{0.0, -0.0, 0.1},
-                    {limits::denorm_min(), -limits::min(), limits::max()},
-                    {limits::lowest(), limits::epsilon(), 0x0.fffffffffffffp-1022},
+                    {limits::denorm_min(), -limits::min(), 1e100},
+                    {-1e100, limits::epsilon(), 0x0.fffffffffffffp-1022},
                     {1.0 / 3, 1e22, 9007199254740993.0},
                     {123456, 1e-5, 5e-324}};
   Random random(3);
   while (mesh.positions.size() < 5000) {
     const Vec3 p(std::bit_cast<double>(random.next()), std::bit_cast<double>(random.next()),
                  random.uniform(-1, 1));
-    if (p.allFinite()) {
+    if (is_within_reach(p)) {
       mesh.positions.push_back(p);
     }
   }
