@@ -451,7 +451,7 @@ private:
       samples.push_back(place.sample);
     }
     std::ranges::sort(own);
-    own.erase(std::ranges::unique(own).begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
     const auto row_of = [&](Index unknown) {
       return static_cast<std::size_t>(std::ranges::lower_bound(own, unknown) - own.begin());
     };
