@@ -47,6 +47,12 @@ Result<cw_array> with_strides(cw_array array, const std::string& what) {
   if (array.data == nullptr && array.rows > 0 && array.columns > 0) {
     return malformed(what + ": there is no data");
   }
+  constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max());
+  if (array.columns > 0 && array.rows > most / size / array.columns) {
+    return Error{ErrorCode::too_large, what + ": " + std::to_string(array.rows) + " rows of " +
+                                           std::to_string(array.columns) +
+                                           " numbers are more than memory can hold"};
+  }
   if (array.row_stride == 0 && array.column_stride == 0) {
     array.column_stride = static_cast<std::ptrdiff_t>(size);
     array.row_stride = static_cast<std::ptrdiff_t>(size * array.columns);
@@ -274,7 +280,7 @@ Result<std::vector<Index>> indices_of(const cw_array& array, std::size_t count,
 
 Result<MeshArgument> MeshArgument::of(const cw_mesh_view* view, const std::string& name) {
   if (view == nullptr) {
-    return malformed(name + " is missing");
+    return malformed(name + " is missing (NULL)");
   }
   Result<Points> positions = Points::of(view->positions, name + "'s positions");
   if (!positions) {
@@ -284,6 +290,9 @@ Result<MeshArgument> MeshArgument::of(const cw_mesh_view* view, const std::strin
   MeshArgument mesh;
   mesh.positions_ = std::move(*positions);
   const std::string faces = name + "'s faces";
+  if (view->faces.rows > std::numeric_limits<Index>::max()) {
+    return Error{ErrorCode::too_large, faces + " are more than 4294967295"};
+  }
   if (const Triangle* const triangles = packed_triangles(*view)) {
     mesh.triangles_ = {triangles, view->faces.rows};
     for (std::size_t t = 0; t < mesh.triangles_.size(); ++t) {

@@ -61,6 +61,9 @@ public:
   /// Faces as they were given.
   [[nodiscard]] PolygonMesh polygons() const;
 
+  /// The same where they are not triangles; null if they are.
+  [[nodiscard]] const PolygonMesh* if_polygons() const { return polygons_ ? &*polygons_ : nullptr; }
+
   /// For each of the triangles the face it was cut from; none: they are the faces.
   [[nodiscard]] std::span<const Index> face_of() const { return face_of_; }
 

@@ -10,9 +10,13 @@
 #include "report/verdict.h"
 #include <cagewright/cage/density.h>
 #include <cagewright/cage/generate.h>
+#include <cagewright/cage/generate_for_polygons.h>
 #include <cagewright/cage/option_table.h>
+#include <cagewright/mesh/triangulate.h>
 #include <cagewright/mesh/weld.h>
 #include <cagewright/validate/cage_metrics.h>
+#include <cagewright/validate/every_cutting.h>
+#include <cagewright/validate/validate_cage.h>
 
 #include <nlohmann/json.hpp>
 
@@ -63,6 +67,14 @@ Status describe_options(char** out) {
   return success();
 }
 
+/// Bent polygons are enclosed whichever way they are cut. (Triangles are not copied for that.)
+Result<GeneratedCage> cage_of(const MeshArgument& model, const GenerateOptions& options,
+                              const Progress& progress) {
+  const PolygonMesh* const polygons = model.if_polygons();
+  return polygons != nullptr ? generate_for_polygons(*polygons, options, progress)
+                             : generate(model.triangles(), options, progress);
+}
+
 Status make_cage(const cw_mesh_view* model, const cw_options* asked, const Progress& progress,
                  cw_cage** out) {
   const Result<MeshArgument> mesh = MeshArgument::of(model, "the model");
@@ -82,7 +94,7 @@ Status make_cage(const cw_mesh_view* model, const cw_options* asked, const Progr
   if (asked != nullptr && asked->start) {
     options.start = &*asked->start;
   }
-  Result<GeneratedCage> made = generate(mesh->triangles(), options, progress);
+  Result<GeneratedCage> made = cage_of(*mesh, options, progress);
   if (!made) {
     return made.error();
   }
@@ -95,11 +107,16 @@ Status make_cage(const cw_mesh_view* model, const cw_options* asked, const Progr
 Status judge(const MeshArgument& model, const PolygonMesh& cage, const ValidateOptions& options,
              const Progress& progress, cw_verdict** out) {
   const TriangleView triangles = model.triangles();
-  Result<ValidityReport> report = validate_cage(cage, triangles, options, progress);
+  const Triangulation cuttings =
+      model.if_polygons() != nullptr ? every_cutting(*model.if_polygons()) : Triangulation();
+  const TriangleView all = model.if_polygons() != nullptr
+                               ? TriangleView{triangles.positions, cuttings.triangles}
+                               : triangles;
+  Result<ValidityReport> report = validate_cage(cage, all, options, progress);
   if (!report) {
     return report.error();
   }
-  name_model_faces(*report, model.face_of());
+  name_model_faces(*report, cuttings.face_of);
   nlohmann::json json = json_of(*report, names());
   json["cage"] =
       figures_as_json(measure_cage(report->merged_vertices > 0 ? weld(cage) : cage, triangles));
@@ -117,6 +134,9 @@ Status compare(const MeshArgument& model, const cw_mesh_view* cages, const char*
   const CoordinateSettings coordinates;
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = 0; i < count; ++i) {
+    if (cage_names != nullptr && cage_names[i] == nullptr) {
+      return all_given({{nullptr, "the name of a cage"}});
+    }
     const std::string name =
         cage_names != nullptr ? cage_names[i] : "cage " + std::to_string(i + 1);
     const Result<MeshArgument> cage = MeshArgument::of(&cages[i], name);
@@ -153,6 +173,11 @@ void cw_options_free(cw_options* options) {
 
 cw_code cw_options_set(cw_options* options, const char* name, const char* value, cw_error** error) {
   return call(error, [&]() -> Status {
+    const Status given = all_given(
+        {{options, "the options"}, {name, "the name of the option"}, {value, "its value"}});
+    if (!given) {
+      return given;
+    }
     const CageOption* const option = find_cage_option(name);
     if (option == nullptr) {
       std::string known;
@@ -169,6 +194,9 @@ cw_code cw_options_set(cw_options* options, const char* name, const char* value,
 
 cw_code cw_options_set_density(cw_options* options, const cw_array* weights, cw_error** error) {
   return call(error, [&]() -> Status {
+    if (Status given = all_given({{options, "the options"}, {weights, "the density"}}); !given) {
+      return given;
+    }
     Result<std::vector<double>> numbers = numbers_of(*weights, "the density");
     if (!numbers) {
       return numbers.error();
@@ -191,6 +219,9 @@ cw_code cw_options_set_density(cw_options* options, const cw_array* weights, cw_
 
 cw_code cw_options_set_start(cw_options* options, const cw_mesh_view* cage, cw_error** error) {
   return call(error, [&]() -> Status {
+    if (Status given = all_given({{options, "the options"}}); !given) {
+      return given;
+    }
     const Result<MeshArgument> mesh = MeshArgument::of(cage, "the cage to start from");
     if (!mesh) {
       return mesh.error();
@@ -201,8 +232,7 @@ cw_code cw_options_set_start(cw_options* options, const cw_mesh_view* cage, cw_e
 }
 
 cw_code cw_options_describe(char** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, [&] { return describe_options(out); });
+  return call_for(out, error, [&] { return describe_options(out); });
 }
 
 void cw_cage_free(cw_cage* cage) {
@@ -210,22 +240,22 @@ void cw_cage_free(cw_cage* cage) {
 }
 
 const cw_mesh* cw_cage_mesh(const cw_cage* cage) {
-  return &cage->mesh;
+  return cage != nullptr ? &cage->mesh : nullptr;
 }
 
 const char* cw_cage_report(const cw_cage* cage) {
-  return cage->report.c_str();
+  return cage != nullptr ? cage->report.c_str() : "";
 }
 
 int cw_cage_is_as_asked(const cw_cage* cage) {
-  return cage->is_as_asked ? 1 : 0;
+  return cage != nullptr && cage->is_as_asked ? 1 : 0;
 }
 
 cw_code cw_generate(const cw_mesh_view* model, const cw_options* options, const cw_control* control,
                     cw_cage** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, control,
-              [&](const Progress& progress) { return make_cage(model, options, progress, out); });
+  return call_for(out, error, control, [&](const Progress& progress) {
+    return make_cage(model, options, progress, out);
+  });
 }
 
 void cw_verdict_free(cw_verdict* verdict) {
@@ -233,17 +263,16 @@ void cw_verdict_free(cw_verdict* verdict) {
 }
 
 int cw_verdict_is_valid(const cw_verdict* verdict) {
-  return verdict->is_valid ? 1 : 0;
+  return verdict != nullptr && verdict->is_valid ? 1 : 0;
 }
 
 const char* cw_verdict_report(const cw_verdict* verdict) {
-  return verdict->report.c_str();
+  return verdict != nullptr ? verdict->report.c_str() : "";
 }
 
 cw_code cw_check(const cw_mesh_view* model, const cw_mesh_view* cage, int flags, size_t max_listed,
                  const cw_control* control, cw_verdict** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, control, [&](const Progress& progress) -> Status {
+  return call_for(out, error, control, [&](const Progress& progress) -> Status {
     const Result<ModelAndCage> meshes = ModelAndCage::of(model, cage);
     if (!meshes) {
       return meshes.error();
@@ -259,8 +288,12 @@ cw_code cw_check(const cw_mesh_view* model, const cw_mesh_view* cage, int flags,
 cw_code cw_compare(const cw_mesh_view* model, const cw_mesh_view* cages, const char* const* names,
                    size_t count, int poses, const cw_control* control, char** out,
                    cw_error** error) {
-  *out = nullptr;
-  return call(error, control, [&](const Progress& progress) -> Status {
+  return call_for(out, error, control, [&](const Progress& progress) -> Status {
+    if (count > 0) {
+      if (Status given = all_given({{cages, "the list of cages"}}); !given) {
+        return given;
+      }
+    }
     const Result<MeshArgument> mesh = MeshArgument::of(model, "the model");
     return mesh ? compare(*mesh, cages, names, count, poses != 0, progress, out)
                 : Status(mesh.error());
@@ -269,8 +302,7 @@ cw_code cw_compare(const cw_mesh_view* model, const cw_mesh_view* cages, const c
 
 cw_code cw_info(const cw_mesh_view* model, int resolution, const cw_control* control, char** out,
                 cw_error** error) {
-  *out = nullptr;
-  return call(error, control, [&](const Progress& progress) -> Status {
+  return call_for(out, error, control, [&](const Progress& progress) -> Status {
     const Result<MeshArgument> mesh = MeshArgument::of(model, "the model");
     if (!mesh) {
       return mesh.error();

@@ -130,6 +130,15 @@ cw_code call(cw_error** error, const std::function<Status()>& body) noexcept {
   }
 }
 
+Status all_given(std::initializer_list<Needed> needed) {
+  for (const Needed& one : needed) {
+    if (one.argument == nullptr) {
+      return Error{ErrorCode::malformed, std::string(one.name) + " is missing (NULL)"};
+    }
+  }
+  return success();
+}
+
 // More are of no use, and the arena has a slot for each.
 constexpr int most_threads = 1024;
 
@@ -162,6 +171,7 @@ template <class T> T known_part(const T* given) {
 
 template cw_control known_part(const cw_control*);
 template cw_deformer_options known_part(const cw_deformer_options*);
+template cw_sequence_options known_part(const cw_sequence_options*);
 template cw_render_options known_part(const cw_render_options*);
 
 } // namespace cagewright::c

@@ -8,6 +8,7 @@
 #include <cagewright/deform/deformer.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -87,6 +88,58 @@ Status bind(const MeshArgument& model, const MeshArgument& cage, const cw_deform
   return success();
 }
 
+Status take_paths(const char* const* paths, std::size_t count, const char* what,
+                  std::vector<std::filesystem::path>& into) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (Status there = all_given({{paths, what}}); !there) {
+      return there;
+    }
+    if (Status there = all_given({{paths[i], what}}); !there) {
+      return there;
+    }
+    into.emplace_back(paths[i]);
+  }
+  return success();
+}
+
+/// The poses of a cage, from files or from the caller's memory.
+Status take_poses(const char* const* posed, const cw_array* positions, std::size_t count,
+                  DeformedFiles& files) {
+  if (posed != nullptr || positions == nullptr) {
+    return take_paths(posed, count, "the path of the cage moved", files.posed);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Result<Points> given =
+        Points::of(positions[i], "the positions of pose " + std::to_string(i));
+    if (!given) {
+      return given.error();
+    }
+    files.positions.emplace_back(given->view().begin(), given->view().end());
+  }
+  return success();
+}
+
+Status take_options(const cw_sequence_options* options, DeformedFiles& files) {
+  const cw_sequence_options given = known_part(options);
+  const Result<CoordinateSettings> coordinates =
+      coordinates_named(given.coordinates, given.settings);
+  if (!coordinates) {
+    return coordinates.error();
+  }
+  files.coordinates = *coordinates;
+  if (options != nullptr) {
+    files.times.first_frame = given.first_frame;
+  }
+  if (given.frames_per_second != 0) {
+    files.times.frames_per_second = given.frames_per_second;
+  }
+  return success();
+}
+
+const double* numbers_in(std::span<const Vec3> points) {
+  return points.empty() ? nullptr : reinterpret_cast<const double*>(points.data());
+}
+
 Error other_count(const std::string& what, std::size_t count, std::size_t wanted) {
   return {ErrorCode::mismatch,
           what + " are " + std::to_string(count) + ", not " + std::to_string(wanted)};
@@ -101,6 +154,9 @@ cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* p
     const Result<CoordinateSettings> options = coordinates_named(kind, settings);
     if (!options) {
       return options.error();
+    }
+    if (Status there = all_given({{points, "the array of points"}}); !there) {
+      return there;
     }
     const Result<Points> given = Points::of(*points, "the points");
     if (!given) {
@@ -120,6 +176,11 @@ cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* p
                                                   " weights, and does not fit into " +
                                                   std::to_string(row)};
     }
+    if (!given->view().empty()) {
+      if (Status there = all_given({{weights, "the place for the weights"}}); !there) {
+        return there;
+      }
+    }
     return solve(**coordinates, given->view(), weights, row != 0 ? row : columns,
                  progress.part(0.2, 1));
   });
@@ -127,8 +188,7 @@ cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* p
 
 cw_code cw_coordinate_columns(const char* kind, const char* settings, const cw_mesh_view* cage,
                               size_t* columns, cw_error** error) {
-  *columns = 0;
-  return call(error, [&]() -> Status {
+  return call_for(columns, error, [&]() -> Status {
     const Result<CoordinateSettings> options = coordinates_named(kind, settings);
     if (!options) {
       return options.error();
@@ -147,8 +207,7 @@ cw_code cw_coordinate_columns(const char* kind, const char* settings, const cw_m
 }
 
 cw_code cw_coordinates_describe(char** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, [&]() -> Status {
+  return call_for(out, error, [&]() -> Status {
     *out = handed_out(coordinate_kinds_as_json().dump());
     return success();
   });
@@ -157,8 +216,7 @@ cw_code cw_coordinates_describe(char** out, cw_error** error) {
 cw_code cw_deformer_bind(const cw_mesh_view* model, const cw_mesh_view* cage,
                          const cw_deformer_options* options, const cw_control* control,
                          cw_deformer** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, control, [&](const Progress& progress) -> Status {
+  return call_for(out, error, control, [&](const Progress& progress) -> Status {
     const Result<ModelAndCage> meshes = ModelAndCage::of(model, cage);
     if (!meshes) {
       return meshes.error();
@@ -174,6 +232,11 @@ void cw_deformer_free(cw_deformer* deformer) {
 cw_code cw_deformer_set_cage(cw_deformer* deformer, const cw_array* positions,
                              const cw_control* control, cw_error** error) {
   return call(error, control, [&](const Progress&) -> Status {
+    if (Status there =
+            all_given({{deformer, "the deformer"}, {positions, "the array of positions"}});
+        !there) {
+      return there;
+    }
     const Result<Points> given = Points::of(*positions, "the cage's positions");
     if (!given) {
       return given.error();
@@ -191,6 +254,12 @@ cw_code cw_deformer_set_cage(cw_deformer* deformer, const cw_array* positions,
 cw_code cw_deformer_move(cw_deformer* deformer, const cw_array* vertices, const cw_array* positions,
                          const cw_control* control, cw_error** error) {
   return call(error, control, [&](const Progress&) -> Status {
+    if (Status there = all_given({{deformer, "the deformer"},
+                                  {vertices, "the array of vertices"},
+                                  {positions, "the array of positions"}});
+        !there) {
+      return there;
+    }
     Deformer& d = deformer->deformer;
     const Result<std::vector<Index>> which =
         indices_of(*vertices, d.cage_positions().size(), "the move");
@@ -213,41 +282,65 @@ cw_code cw_deformer_move(cw_deformer* deformer, const cw_array* vertices, const 
 }
 
 size_t cw_deformer_vertex_count(const cw_deformer* deformer) {
-  return deformer->deformer.positions().size();
+  return deformer != nullptr ? deformer->deformer.positions().size() : 0;
 }
 
 size_t cw_deformer_cage_vertex_count(const cw_deformer* deformer) {
-  return deformer->deformer.cage_positions().size();
+  return deformer != nullptr ? deformer->deformer.cage_positions().size() : 0;
 }
 
 const double* cw_deformer_positions(const cw_deformer* deformer) {
-  return reinterpret_cast<const double*>(deformer->deformer.positions().data());
+  return deformer != nullptr ? numbers_in(deformer->deformer.positions()) : nullptr;
 }
 
 const double* cw_deformer_normals(const cw_deformer* deformer) {
-  const std::span<const Vec3> normals = deformer->deformer.normals();
-  return normals.empty() ? nullptr : reinterpret_cast<const double*>(normals.data());
+  return deformer != nullptr ? numbers_in(deformer->deformer.normals()) : nullptr;
 }
 
 const double* cw_deformer_cage_positions(const cw_deformer* deformer) {
-  return reinterpret_cast<const double*>(deformer->deformer.cage_positions().data());
+  return deformer != nullptr ? numbers_in(deformer->deformer.cage_positions()) : nullptr;
 }
 
 size_t cw_deformer_unbound_count(const cw_deformer* deformer) {
-  return deformer->deformer.unbound();
+  return deformer != nullptr ? deformer->deformer.unbound() : 0;
 }
 
 size_t cw_deformer_weight_bytes(const cw_deformer* deformer) {
-  return deformer->deformer.weight_bytes();
+  return deformer != nullptr ? deformer->deformer.weight_bytes() : 0;
 }
 
 cw_code cw_deform_file(const char* model, const char* cage, const char* posed, const char* out,
                        const cw_control* control, char** notes, cw_error** error) {
+  return cw_deform_sequence(model, cage, &posed, nullptr, 1, &out, 1, nullptr, control, notes,
+                            error);
+}
+
+cw_code cw_deform_sequence(const char* model, const char* cage, const char* const* posed,
+                           const cw_array* positions, size_t count, const char* const* outs,
+                           size_t out_count, const cw_sequence_options* options,
+                           const cw_control* control, char** notes, cw_error** error) {
   if (notes != nullptr) {
     *notes = nullptr;
   }
   return call(error, control, [&](const Progress& progress) -> Status {
-    const Result<std::vector<FileNote>> noted = deform_file({model, cage, posed, out}, progress);
+    const Status there =
+        all_given({{model, "the path of the model"}, {cage, "the path of the cage"}});
+    if (!there) {
+      return there;
+    }
+    DeformedFiles files;
+    files.model = model;
+    files.cage = cage;
+    if (Status taken = take_poses(posed, positions, count, files); !taken) {
+      return taken;
+    }
+    if (Status taken = take_paths(outs, out_count, "the path to write", files.outs); !taken) {
+      return taken;
+    }
+    if (Status taken = take_options(options, files); !taken) {
+      return taken;
+    }
+    const Result<std::vector<FileNote>> noted = deform_files(files, progress);
     if (!noted) {
       return noted.error();
     }

@@ -19,8 +19,14 @@ using namespace cagewright::c;
 
 namespace {
 
-Pose pose_of(cw_pose pose) {
-  return pose == CW_POSE_BIND ? Pose::bind : Pose::shown;
+Result<Pose> pose_of(cw_pose pose) {
+  switch (pose) {
+  case CW_POSE_SHOWN:
+    return Pose::shown;
+  case CW_POSE_BIND:
+    return Pose::bind;
+  }
+  return Error{ErrorCode::invalid_option, "there is no such pose of a model"};
 }
 
 Status hand_out(Result<ModelFile> file, cw_mesh** out) {
@@ -83,63 +89,70 @@ void cw_mesh_free(cw_mesh* mesh) {
 }
 
 size_t cw_mesh_vertex_count(const cw_mesh* mesh) {
-  return mesh->mesh.positions.size();
+  return mesh != nullptr ? mesh->mesh.positions.size() : 0;
 }
 
 size_t cw_mesh_face_count(const cw_mesh* mesh) {
-  return mesh->mesh.face_count();
+  return mesh != nullptr ? mesh->mesh.face_count() : 0;
 }
 
 size_t cw_mesh_corner_count(const cw_mesh* mesh) {
-  return mesh->mesh.corners().size();
+  return mesh != nullptr ? mesh->mesh.corners().size() : 0;
 }
 
 size_t cw_mesh_triangle_count(const cw_mesh* mesh) {
-  return mesh->cut.triangles.size();
+  return mesh != nullptr ? mesh->cut.triangles.size() : 0;
 }
 
 const double* cw_mesh_positions(const cw_mesh* mesh) {
-  return reinterpret_cast<const double*>(mesh->mesh.positions.data());
+  return mesh != nullptr ? reinterpret_cast<const double*>(mesh->mesh.positions.data()) : nullptr;
 }
 
 const uint32_t* cw_mesh_corners(const cw_mesh* mesh) {
-  return mesh->mesh.corners().data();
+  return mesh != nullptr ? mesh->mesh.corners().data() : nullptr;
 }
 
 const uint64_t* cw_mesh_offsets(const cw_mesh* mesh) {
-  return mesh->offsets.data();
+  return mesh != nullptr ? mesh->offsets.data() : nullptr;
 }
 
 const uint32_t* cw_mesh_triangles(const cw_mesh* mesh) {
-  return reinterpret_cast<const uint32_t*>(mesh->cut.triangles.data());
+  return mesh != nullptr ? reinterpret_cast<const uint32_t*>(mesh->cut.triangles.data()) : nullptr;
 }
 
 const uint32_t* cw_mesh_face_of_triangle(const cw_mesh* mesh) {
-  return mesh->cut.face_of.data();
+  return mesh != nullptr ? mesh->cut.face_of.data() : nullptr;
 }
 
 const float* cw_mesh_colors(const cw_mesh* mesh) {
-  return mesh->mesh.colors.empty() ? nullptr
-                                   : reinterpret_cast<const float*>(mesh->mesh.colors.data());
+  return mesh == nullptr || mesh->mesh.colors.empty()
+             ? nullptr
+             : reinterpret_cast<const float*>(mesh->mesh.colors.data());
 }
 
 size_t cw_mesh_group_count(const cw_mesh* mesh) {
-  return mesh->mesh.group_names.size();
+  return mesh != nullptr ? mesh->mesh.group_names.size() : 0;
 }
 
 const char* cw_mesh_group_name(const cw_mesh* mesh, size_t group) {
-  return group < mesh->mesh.group_names.size() ? mesh->mesh.group_names[group].c_str() : "";
+  return mesh != nullptr && group < mesh->mesh.group_names.size()
+             ? mesh->mesh.group_names[group].c_str()
+             : "";
 }
 
 const uint32_t* cw_mesh_face_groups(const cw_mesh* mesh) {
-  return mesh->mesh.face_groups.empty() ? nullptr : mesh->mesh.face_groups.data();
+  return mesh == nullptr || mesh->mesh.face_groups.empty() ? nullptr
+                                                           : mesh->mesh.face_groups.data();
 }
 
 const char* cw_mesh_notes(const cw_mesh* mesh) {
-  return mesh->notes.c_str();
+  return mesh != nullptr ? mesh->notes.c_str() : "[]";
 }
 
 cw_mesh_view cw_mesh_as_view(const cw_mesh* mesh) {
+  if (mesh == nullptr) {
+    return {};
+  }
   const std::size_t faces = mesh->mesh.face_count();
   const std::span<const Index> corners = mesh->mesh.corners();
   const bool has_triangles_only = mesh->cut.triangles.size() == faces;
@@ -150,27 +163,43 @@ cw_mesh_view cw_mesh_as_view(const cw_mesh* mesh) {
 }
 
 cw_code cw_read_mesh(const char* path, cw_pose pose, cw_mesh** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, [&] { return hand_out(ModelFile::open(path, pose_of(pose)), out); });
+  return call_for(out, error, [&]() -> Status {
+    if (Status given = all_given({{path, "the path"}}); !given) {
+      return given;
+    }
+    const Result<Pose> known = pose_of(pose);
+    return known ? hand_out(ModelFile::open(path, *known), out) : Status(known.error());
+  });
 }
 
 cw_code cw_parse_mesh(const void* bytes, size_t size, const char* format, const char* name,
                       cw_pose pose, cw_mesh** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, [&]() -> Status {
+  return call_for(out, error, [&]() -> Status {
+    if (size > 0) {
+      if (Status given = all_given({{bytes, "the file in memory"}}); !given) {
+        return given;
+      }
+    }
+    const Result<Pose> placed = pose_of(pose);
+    if (!placed) {
+      return placed.error();
+    }
     std::string text(static_cast<const char*>(bytes), size);
     const Result<MeshFormat> known = format_of(text, format);
     if (!known) {
       return known.error();
     }
-    return hand_out(ModelFile::parse(std::move(text), *known, name != nullptr ? name : "the bytes",
-                                     pose_of(pose)),
-                    out);
+    return hand_out(
+        ModelFile::parse(std::move(text), *known, name != nullptr ? name : "the bytes", *placed),
+        out);
   });
 }
 
 cw_code cw_write_mesh(const cw_mesh_view* mesh, const char* path, cw_error** error) {
   return call(error, [&]() -> Status {
+    if (Status there = all_given({{path, "the path"}}); !there) {
+      return there;
+    }
     const Result<MeshArgument> given = MeshArgument::of(mesh, "the mesh");
     return given ? write_mesh(given->polygons(), path) : Status(given.error());
   });

@@ -32,6 +32,10 @@ Result<RenderOptions> options_of(const cw_render_options& given) {
                                                 " x " + std::to_string(options.height) +
                                                 " pixels; each side has 1 to 32768"};
   }
+  if (given.background < 0 || given.background > 2) {
+    return Error{ErrorCode::invalid_option,
+                 "there is no background " + std::to_string(given.background) + "; give 0, 1 or 2"};
+  }
   options.up = given.z_up != 0 ? UpAxis::z : UpAxis::y;
   options.background = given.background == 1   ? Background::white
                        : given.background == 2 ? Background::transparent
@@ -43,8 +47,13 @@ Result<RenderOptions> options_of(const cw_render_options& given) {
   return options;
 }
 
-std::vector<View> views_of(const cw_render_options& given) {
+Result<std::vector<View>> views_of(const cw_render_options& given) {
   std::vector<View> views;
+  if (given.view_count > 0) {
+    if (const Status there = all_given({{given.views, "the list of views"}}); !there) {
+      return there.error();
+    }
+  }
   for (std::size_t i = 0; i < given.view_count; ++i) {
     views.push_back({given.views[2 * i], given.views[2 * i + 1]});
   }
@@ -59,6 +68,10 @@ Status draw(const cw_mesh_view* model, const cw_mesh_view* cage, const cw_render
   const Result<RenderOptions> options = options_of(given);
   if (!options) {
     return options.error();
+  }
+  const Result<std::vector<View>> views = views_of(given);
+  if (!views) {
+    return views.error();
   }
   const Result<MeshArgument> solid = MeshArgument::of(model, "the model");
   if (!solid) {
@@ -79,7 +92,7 @@ Status draw(const cw_mesh_view* model, const cw_mesh_view* cage, const cw_render
   if (!renderer) {
     return renderer.error();
   }
-  Result<Image> image = renderer->render(scene, views_of(given), *options);
+  Result<Image> image = renderer->render(scene, *views, *options);
   if (!image) {
     return image.error();
   }
@@ -90,6 +103,9 @@ Status draw(const cw_mesh_view* model, const cw_mesh_view* cage, const cw_render
 } // namespace
 
 int cw_view_named(const char* name, double yaw_pitch[2]) {
+  if (name == nullptr || yaw_pitch == nullptr) {
+    return 0;
+  }
   const std::optional<View> view = view_named(name);
   if (view) {
     yaw_pitch[0] = view->yaw_degrees;
@@ -99,26 +115,28 @@ int cw_view_named(const char* name, double yaw_pitch[2]) {
 }
 
 size_t cw_image_width(const cw_image* image) {
-  return static_cast<size_t>(image->image.width);
+  return image != nullptr ? static_cast<size_t>(image->image.width) : 0;
 }
 
 size_t cw_image_height(const cw_image* image) {
-  return static_cast<size_t>(image->image.height);
+  return image != nullptr ? static_cast<size_t>(image->image.height) : 0;
 }
 
 const uint8_t* cw_image_pixels(const cw_image* image) {
-  return image->image.pixels.front().data();
+  return image != nullptr ? image->image.pixels.front().data() : nullptr;
 }
 
 cw_code cw_image_write_png(const cw_image* image, const char* path, cw_error** error) {
-  return call(error, [&] { return write_png(image->image, path); });
+  return call(error, [&] {
+    const Status given = all_given({{image, "the picture"}, {path, "the path"}});
+    return given ? write_png(image->image, path) : given;
+  });
 }
 
 cw_code cw_render(const cw_mesh_view* model, const cw_mesh_view* cage,
                   const cw_render_options* options, cw_image** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, nullptr,
-              [&](const Progress&) { return draw(model, cage, known_part(options), out); });
+  return call_for(out, error, nullptr,
+                  [&](const Progress&) { return draw(model, cage, known_part(options), out); });
 }
 
 #else // the same functions, to say that there are no pictures
@@ -156,8 +174,7 @@ cw_code cw_image_write_png(const cw_image*, const char*, cw_error** error) {
 
 cw_code cw_render(const cw_mesh_view*, const cw_mesh_view*, const cw_render_options*,
                   cw_image** out, cw_error** error) {
-  *out = nullptr;
-  return call(error, no_pictures);
+  return call_for(out, error, no_pictures);
 }
 
 #endif

@@ -5,7 +5,9 @@ find_program(CAGEWRIGHT_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(NOT CAGEWRIGHT_INSTALL OR NOT CAGEWRIGHT_BUILD_CLI OR NOT CAGEWRIGHT_BUILD_C OR NOT CAGEWRIGHT_PYTHON3)
   return() # packages have all of it
 endif()
-set(CAGEWRIGHT_MAINTAINER "The Cagewright authors <maintainers@cagewright.org>" CACHE STRING "Of the Debian packages")
+# The project has no address yet. This one is nobody's by RFC 2606, and well formed: whoever publishes packages gives their
+# own, -DCAGEWRIGHT_MAINTAINER="Name <address>".
+set(CAGEWRIGHT_MAINTAINER "Cagewright developers <cagewright@no-address.invalid>" CACHE STRING "Of the Debian packages: name and address")
 set(CAGEWRIGHT_DEBIAN_VERSION "${PROJECT_VERSION}-1" CACHE STRING "Of the Debian packages")
 set(packaging ${PROJECT_SOURCE_DIR}/packaging)
 set(made ${PROJECT_BINARY_DIR}/packaging)

@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
     return fail(model.error());
   }
   const Result<GeneratedCage> cage =
-      generate(to_triangle_mesh(model->mesh()), {.vertices = std::atoi(argv[2])});
+      generate_for_polygons(model->mesh(), {.vertices = std::atoi(argv[2])});
   if (!cage) {
     return fail(cage.error());
   }

@@ -15,8 +15,7 @@ int main(int argc, char** argv) {
     std::cerr << model.error().message << '\n';
     return 2;
   }
-  const auto made =
-      cagewright::generate(cagewright::to_triangle_mesh(*model), {.vertices = 60, .quads = true});
+  const auto made = cagewright::generate_for_polygons(*model, {.vertices = 60, .quads = true});
   if (!made) {
     std::cerr << argv[1] << ": " << made.error().message << '\n';
     return 3;

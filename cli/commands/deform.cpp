@@ -13,6 +13,7 @@
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
+#include <cagewright/deform/write_movement.h>
 #include <cagewright/io/model_file.h>
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
@@ -76,7 +77,7 @@ Result<std::vector<std::string>> expand(const std::vector<std::string>& names) {
 /// OUT is a folder, or a name in which * stands for the name of the pose.
 Result<std::vector<Pose>> plan_outputs(const Options& options, std::vector<std::string> paths) {
   std::vector<Pose> poses;
-  if (holds_movement(options.output, paths.size())) {
+  if (is_one_movement(options.output, paths.size())) {
     in_order_of_frames(paths);
     for (const std::string& path : paths) {
       poses.push_back({path, options.output});
@@ -386,6 +387,21 @@ int write_models(const std::vector<Pose>& poses, const ModelAndCage& meshes,
   return done;
 }
 
+/// All poses of the model in one file.
+int write_frames(const Options& options, const ModelAndCage& meshes,
+                 const std::vector<std::vector<Vec3>>& cages, const Mover& move,
+                 const FrameSeen& seen, const Session& session) {
+  const Result<std::vector<FileNote>> notes = write_movement(
+      meshes.file, cages, move, options.times, options.output, session.progress(), seen);
+  if (!notes) {
+    return fail(notes.error());
+  }
+  tell(*notes);
+  session.say(fmt::format("{}: {} frames of {} vertices\n", options.output, cages.size(),
+                          meshes.model().positions.size()));
+  return done;
+}
+
 int run(const Options& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   const Result<std::vector<std::string>> paths = expand(options.poses);
@@ -408,7 +424,7 @@ int run(const Options& options, const Session& session) {
   if (!cages) {
     return fail(cages.error());
   }
-  const bool is_movement = holds_movement(options.output, poses->size());
+  const bool is_movement = is_one_movement(options.output, poses->size());
   if (!is_movement) {
     if (const Status writable = can_write_formats(meshes->file, *poses); !writable) {
       return fail(writable.error());
@@ -433,10 +449,9 @@ int run(const Options& options, const Session& session) {
         exit_code != done) {
       return exit_code;
     }
-  } else if (const Status written = write_movement(meshes->file, *cages, *move, options.times,
-                                                   options.output, seen, session);
-             !written) {
-    return fail(written.error());
+  } else if (const int exit_code = write_frames(options, *meshes, *cages, *move, seen, session);
+             exit_code != done) {
+    return exit_code;
   }
   if (const Status written = figures.write(); !written) {
     return fail(written.error());

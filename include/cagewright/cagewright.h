@@ -17,6 +17,7 @@
 #include <cagewright/deform/standard_poses.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
+#include <cagewright/deform/write_movement.h>
 #include <cagewright/io/mesh_format.h>
 #include <cagewright/io/model_file.h>
 #include <cagewright/io/point_cache.h>

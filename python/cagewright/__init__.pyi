@@ -105,8 +105,9 @@ class Deformer:
     @property
     def weight_bytes(self) -> int: ...
 
-def deform_file(model: Path, cage: Path, posed: Path, out: Path, *, threads: Optional[int] = None,
-                progress: Progress = None) -> list[str]: ...
+def deform_file(model: Path, cage: Path, posed: Any, out: Union[Path, Sequence[Path]], *, coordinates: str = "mean_value",
+                fps: float = 24, first_frame: float = 1, threads: Optional[int] = None, progress: Progress = None,
+                **settings: Any) -> list[str]: ...
 def render(vertices: Vertices, faces: Optional[Faces] = None, cage_vertices: Optional[Vertices] = None,
            cage_faces: Optional[Faces] = None, *, size: tuple[int, int] = (1200, 900), views: Any = "three-quarter",
            up: str = "y", background: str = "gradient", shadows: bool = True, ambient_occlusion: bool = True,

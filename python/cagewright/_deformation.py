@@ -2,6 +2,7 @@
 
 import ctypes
 import json
+import os
 from collections import namedtuple
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from . import _arrays
 from ._calls import control as quick_control
 from ._calls import run
-from ._library import DeformerOptions, Handle, checked, lib, path_bytes, take_text
+from ._library import Array, DeformerOptions, Handle, SequenceOptions, checked, lib, path_bytes, take_text
 
 _STORAGES = {"single": 0, "full": 1, "compact": 2}
 
@@ -208,27 +209,83 @@ class Deformer:
         return _arrays.view(self._handle, function(self._handle.pointer), shape, "<f8", writable=False)
 
 
-def deform_file(model, cage, posed, out, *, threads=None, progress=None):
+def _is_path(thing):
+    return isinstance(thing, (str, bytes, os.PathLike))
+
+
+def _listed(posed):
+    """Poses of a cage, each a path, an array of C x 3, or an object with vertices."""
+    if _is_path(posed) or _arrays.parts_of(posed) is not None:
+        return [posed]
+    try:
+        posed = posed if isinstance(posed, np.ndarray) else list(posed)
+    except TypeError:
+        raise TypeError("posed: give the path or the vertices of the cage, or a list of them, not a "
+                        f"{type(posed).__name__}") from None
+    if len(posed) and not _is_path(posed[0]) and _arrays.parts_of(posed[0]) is None and np.ndim(posed[0]) == 1:
+        return [posed]  # one array of C x 3
+    return list(posed)
+
+
+def _poses_of(posed):
+    """The same as the library takes it: paths, or arrays; and what must stay alive."""
+    poses = _listed(posed)
+    if any(map(_is_path, poses)):
+        if not all(map(_is_path, poses)):
+            raise TypeError("posed: paths and arrays cannot be mixed; read the files with read_mesh()")
+        return (ctypes.c_char_p * len(poses))(*map(path_bytes, poses)), None, len(poses), None
+    pairs = []
+    for i, pose in enumerate(poses):
+        parts = _arrays.parts_of(pose)
+        pairs.append(_arrays.finite_points(pose if parts is None else parts[0], f"pose {i}"))
+    return None, (Array * len(poses))(*[array for array, _keep in pairs]), len(poses), pairs
+
+
+def deform_file(model, cage, posed, out, *, coordinates="mean_value", fps=24, first_frame=1, threads=None, progress=None,
+                **settings):
     """Moves the model in a file as its cage has moved, and writes it: the same file with other positions and normals,
-    texture coordinates, materials, groups and all else as they were.
+    texture coordinates, materials, groups and all else as they were. Or a whole sequence at once.
 
     Args:
         model: path of the model: OBJ, PLY, STL, OFF, GLB or glTF.
-        cage: path of its cage at rest.
-        posed: path of the cage with its vertices moved.
-        out: path to write; none of the others.
+        cage: path of its cage at rest, C vertices.
+        posed: the cage with its vertices moved: a path, an array of C x 3, or an object with vertices. For a sequence a
+            list of them, in the order of the frames, or an array of F x C x 3.
+        out: path to write; none of the others. For a sequence one that holds the movement: a point cache (.pc2, .mdd)
+            or an animated .glb (each frame a morph target); or a list of paths, one for each pose.
+        coordinates: the kind, one of those of coordinate_kinds(), as for coordinates().
+        fps, first_frame: frames a second, and the number of the first, of a movement in one file.
         threads, progress: as for generate().
+        settings: of the kind of coordinates.
 
     Returns:
         Sentences about what was taken otherwise than it stands; usually none.
 
+    Raises:
+        FileError: a file cannot be read or written. InputError: cage and pose do not belong together, and the like.
+
     >>> cagewright.deform_file("hero.glb", "cage.obj", "cage_waving.obj", "hero_waving.glb")
+    >>> frames = [cage.vertices + [0, 0.1 * i, 0] for i in range(24)]
+    >>> cagewright.deform_file("hero.obj", "cage.obj", frames, "hero.pc2", fps=30)
     """
-    paths = [path_bytes(path) for path in (model, cage, posed, out)]
+    paths, arrays, count, keep = _poses_of(posed)
+    outs = [out] if _is_path(out) else list(out)
+    names = (ctypes.c_char_p * len(outs))(*map(path_bytes, outs))
+    model, cage = path_bytes(model), path_bytes(cage)
+    try:
+        options = SequenceOptions(size=ctypes.sizeof(SequenceOptions), coordinates=_kind_bytes(coordinates),
+                                  settings=_settings_text(settings), frames_per_second=fps, first_frame=first_frame)
+    except TypeError:
+        raise ValueError(f"fps and first_frame are numbers, not {fps!r} and {first_frame!r}") from None
+    if not fps > 0:
+        raise ValueError(f"fps: {fps!r} is no number of frames a second; give one above 0")
 
     def work(control):
         notes = ctypes.c_void_p()
-        checked(lib.cw_deform_file, *paths, ctypes.byref(control), ctypes.byref(notes))
+        checked(lib.cw_deform_sequence, model, cage, paths, arrays, count, names, len(outs), ctypes.byref(options),
+                ctypes.byref(control), ctypes.byref(notes))
         return take_text(notes.value)
 
-    return [note["message"] for note in json.loads(run(work, threads, progress))]
+    said = run(work, threads, progress)
+    del keep
+    return [note["message"] for note in json.loads(said)]

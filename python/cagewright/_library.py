@@ -40,6 +40,11 @@ class RenderOptions(ctypes.Structure):
                 ("no_ambient_occlusion", c_int), ("model_edges", c_int), ("no_cage_faces", c_int)]
 
 
+class SequenceOptions(ctypes.Structure):
+    _fields_ = [("size", c_size_t), ("coordinates", c_char_p), ("settings", c_char_p), ("frames_per_second", c_double),
+                ("first_frame", c_double)]
+
+
 _text = c_char_p
 _handle = c_void_p
 _out = POINTER(c_void_p)
@@ -109,6 +114,8 @@ _FUNCTIONS = {
     "cw_deformer_unbound_count": (c_size_t, [_handle]),
     "cw_deformer_weight_bytes": (c_size_t, [_handle]),
     "cw_deform_file": (c_int, [_text, _text, _text, _text, _control, _out, _out]),
+    "cw_deform_sequence": (c_int, [_text, _text, POINTER(_text), _array, c_size_t, POINTER(_text), c_size_t,
+                                   POINTER(SequenceOptions), _control, _out, _out]),
     "cw_view_named": (c_int, [_text, c_double * 2]),
     "cw_image_free": (None, [_handle]),
     "cw_image_width": (c_size_t, [_handle]),

@@ -364,6 +364,17 @@ static void deforms(const cw_mesh* mesh, const cw_cage* cage, const char* model_
   EXPECT(cw_mesh_vertex_count(result) == vertices);
   EXPECT(cw_mesh_positions(result)[0] != xyz[0]);
   cw_mesh_free(result);
+  const char* const twice[] = {posed_path, posed_path};
+  const cw_sequence_options times = {sizeof(cw_sequence_options), NULL, NULL, 25, 1};
+  char cache_path[4096];
+  snprintf(cache_path, sizeof cache_path, "%s/moved.pc2", folder);
+  const char* const cache = cache_path;
+  SUCCEEDS(cw_deform_sequence(model_path, cage_path, twice, NULL, 2, &cache, 1, &times, NULL, NULL,
+                              &error));
+  const char* const single = out_path;
+  FAILS(cw_deform_sequence(model_path, cage_path, twice, NULL, 2, &single, 1, NULL, NULL, NULL,
+                           &error),
+        CW_UNSUPPORTED, "holds one pose");
   FAILS(cw_deform_file(model_path, cage_path, posed_path, cage_path, NULL, NULL, &error),
         CW_CANNOT_WRITE, "written over");
   free(moved);

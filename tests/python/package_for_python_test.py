@@ -49,6 +49,12 @@ def ring(around=24, across=12):
     return V, np.stack([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)], axis=-1).reshape(-1, 4)
 
 
+def bent_ring(around=4, across=3, seed=1):
+    """A ring of quads with corners in disorder, their middle here or there."""
+    V, quads = ring(around, across)
+    return V + np.random.default_rng(seed).random(V.shape) - 0.5, quads
+
+
 V, QUADS = ring()
 F = np.concatenate([QUADS[:, [0, 1, 2]], QUADS[:, [0, 2, 3]]])
 CAGE = cagewright.generate(V, F, **QUICK)
@@ -224,6 +230,23 @@ class Generate(InAFolder):
                     made = cagewright.generate(V, QUADS, **{**quick, **given})
                 self.assertEqual(made.vertices.tobytes(), expected.vertices.tobytes())
                 self.assertEqual(made.corners.tolist(), expected.corners.tolist())
+
+    def test_bent_quads_are_enclosed_however_they_are_cut(self):
+        """As by the program, and whichever way the quads are given; one way to cut them would not do."""
+        points, quads = bent_ring()
+        quick = {"num_vertices": 40, "envelope_resolution": 16, "rounds": 0, "symmetry": "off", "clearance": 0.001}
+        model, cage = self.folder / "model.obj", self.folder / "cage.obj"
+        cagewright.write_mesh(model, points, quads)
+        self.run_program("generate", model, "-o", cage, "--vertices", 40, "--envelope-resolution", 16, "--rounds", 0,
+                         "--symmetry", "off", "--clearance", "0.1%")
+        expected = cagewright.read_mesh(cage)
+        for faces in (quads, (quads.ravel().astype("uint8"), 4 * np.arange(len(quads) + 1))):
+            made = cagewright.generate(points, faces, **quick)
+            self.assertEqual(made.vertices.tobytes(), expected.vertices.tobytes())
+        for cut in ([[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]):
+            self.assertTrue(cagewright.check(points, quads[:, cut].reshape(-1, 3), made))
+        of_triangles = cagewright.generate(points, quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3), **quick)
+        self.assertFalse(cagewright.check(points, quads, of_triangles), "this model does not show what it is for")
 
     def test_kinds_of_coordinates_are_told(self):
         kinds = cagewright.coordinate_kinds()
@@ -534,6 +557,44 @@ class Others(InAFolder):
         self.assertIn("usemtl red", one.read_text())
         with self.assertRaisesRegex(OSError, "written over"):
             cagewright.deform_file(model, rest, posed, model)
+
+    def test_sequences(self):
+        """Many poses, of files or of arrays, into a point cache, an animation or files: as the program writes them."""
+        model, rest = self.folder / "model.obj", self.folder / "rest.obj"
+        cagewright.write_mesh(model, V, QUADS)
+        cagewright.write_mesh(rest, CAGE)
+        frames = [CAGE.vertices * [1, 1 + 0.1 * i, 1] for i in range(3)]
+        poses = [self.folder / f"pose_{i}.obj" for i in range(3)]
+        for path, frame in zip(poses, frames):
+            cagewright.write_mesh(path, frame, CAGE.faces)
+        ours, theirs = self.folder / "ours", self.folder / "theirs"
+        ours.mkdir()
+        theirs.mkdir()
+        for name in ("moved.pc2", "moved.mdd", "moved.glb"):  # a GLB has its name within
+            self.run_program("deform", model, rest, *poses, "-o", theirs / name, "--fps", 30, "--first-frame", 7)
+            for posed in (frames, np.array(frames), poses, [Thing(vertices=frame, faces=CAGE.faces) for frame in frames]):
+                with self.subTest(name=name, posed=type(posed)):
+                    self.assertEqual(cagewright.deform_file(model, rest, posed, ours / name, fps=30, first_frame=7), [])
+                    self.assertEqual((ours / name).read_bytes(), (theirs / name).read_bytes())
+        outs = [ours / f"moved_{i}.obj" for i in range(3)]
+        cagewright.deform_file(model, rest, frames, outs, coordinates="green")
+        for pose, out in zip(poses, outs):
+            self.run_program("deform", model, rest, pose, "-o", theirs / out.name, "--coordinates", "green")
+            self.assertEqual(out.read_bytes(), (theirs / out.name).read_bytes())
+        one = cagewright.deform_file(model, rest, frames[1].tolist(), ours / "one.obj", coordinates="green")
+        self.assertEqual((one, (ours / "one.obj").read_bytes()), ([], outs[1].read_bytes()))
+        for posed, out, words in [(frames, "x.obj", "holds one pose"), (frames, ["a.obj", "b.obj"], "3 poses, but 2 files"),
+                                  ([], "x.pc2", "no pose"), (frames[0][1:], "x.obj", "pose 0 has"), (frames[:2], ["a.obj"] * 2, "two poses"),
+                                  ([frames[0] * np.nan], "x.pc2", "pose 0: row 0"), (poses, poses[0], "holds one pose"),
+                                  (poses[0], poses[0], "written over")]:
+            outs = self.folder / out if isinstance(out, str) else [self.folder / name for name in out] if isinstance(out, list) else out
+            with self.subTest(words=words), self.assertRaisesRegex((ValueError, OSError), words):
+                cagewright.deform_file(model, rest, posed, outs)
+        for posed, words in [(3, "not a int"), ([poses[0], frames[0]], "cannot be mixed")]:
+            with self.assertRaisesRegex(TypeError, words):
+                cagewright.deform_file(model, rest, posed, self.folder / "x.pc2")
+        with self.assertRaisesRegex(ValueError, "fps"):
+            cagewright.deform_file(model, rest, frames, self.folder / "x.pc2", fps=0)
 
     @unittest.skipUnless("render" in cagewright.features, "built without pictures")
     def test_render(self):

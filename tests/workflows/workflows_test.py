@@ -40,6 +40,13 @@ def ring(thickness, around=24, across=12):
     return "\n".join(lines) + "\n"
 
 
+def random_numbers(state=1):
+    """From 0 to 1, the same each time."""
+    while True:
+        state = (1103515245 * state + 12345) % 2**31
+        yield state / 2**31
+
+
 def start_in(folder, *words):
     return subprocess.Popen([str(word) for word in words], cwd=folder, env=ENVIRONMENT, text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
@@ -138,13 +145,17 @@ class Engines(unittest.TestCase):
 class EveryRoute(unittest.TestCase):
     """From a file to a deformed result, by the command line, C++, C, Python, batch, Snakemake and dask: the same bytes."""
 
+    @staticmethod
+    def source(_folder):
+        source = pathlib.Path(os.environ.get("CAGEWRIGHT_MODELS", "/nowhere")) / "armadillo.off"
+        return source if source.exists() else SOURCE / "samples" / "creature.obj"
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
-        source = pathlib.Path(os.environ.get("CAGEWRIGHT_MODELS", "/nowhere")) / "armadillo.off"
-        source = source if source.exists() else SOURCE / "samples" / "creature.obj"
+        source = cls.source(cls.folder)
         cls.models, cls.poses = cls.folder / "models", cls.folder / "poses"
         cls.models.mkdir()
         cls.poses.mkdir()
@@ -214,6 +225,17 @@ class EveryRoute(unittest.TestCase):
         out = self.folder / "dask"
         self.run_words(PYTHON, DASK, self.models, "-o", out, "--poses", self.poses, "--workers", 2, "--vertices", 60)
         self.assert_same(out / "model.obj", out / f"model-posed{self.model.suffix}")
+
+
+class EveryRouteOfBentQuads(EveryRoute):
+    """The same for a model that one way to cut its faces into triangles would not enclose."""
+
+    @staticmethod
+    def source(folder):
+        path, random = folder / "bent.obj", random_numbers()
+        path.write_text("\n".join(" ".join(["v", *(str(float(c) + next(random) - 0.5) for c in line.split()[1:])])
+                                  if line.startswith("v") else line for line in ring(0.3, 8, 5).splitlines()) + "\n")
+        return path
 
 
 if __name__ == "__main__":

@@ -6,6 +6,9 @@
 /// with objects of its own; one object is for one thread at a time, but may be read by several.
 ///
 /// What every function has in common:
+///  - No argument makes the library crash: what is NULL and may not be is CW_MALFORMED; functions
+///    that cannot fail give 0, NULL or "" for NULL. (Memory that an array says it has must be
+///    there.)
 ///  - Failures are cw_code values other than CW_OK. The last argument, `error`, may be NULL; else
 ///    it receives a sentence for people, to be freed with cw_error_free(), or NULL on success.
 ///  - Results come through a pointer (`out`) and are freed by the function of their kind; NULL may
@@ -333,6 +336,26 @@ CW_API size_t cw_deformer_weight_bytes(const cw_deformer* deformer);
 CW_API cw_code cw_deform_file(const char* model, const char* cage, const char* posed,
                               const char* out, const cw_control* control, char** notes,
                               cw_error** error);
+
+typedef struct cw_sequence_options {
+  size_t size;              ///< sizeof(cw_sequence_options)
+  const char* coordinates;  ///< the kind; NULL: "mean_value"
+  const char* settings;     ///< of that kind; NULL: as they are by themselves
+  double frames_per_second; ///< of a movement in one file; 0: 24
+  double first_frame;       ///< the number of its first frame
+} cw_sequence_options;
+
+/// The same for many poses, for which weights are computed once.
+/// \param posed      the paths of the cage in each pose; or NULL, and
+/// \param positions  the vertices of the cage in each pose: `count` arrays of C x 3
+/// \param outs       one path that holds the movement: a point cache (.pc2, .mdd) of any number of
+///                   poses, or an animated .glb of several, each a morph target; or a path for each
+///                   pose, written as by cw_deform_file()
+/// \param options    NULL: mean value coordinates, 24 frames a second from frame 1 on
+CW_API cw_code cw_deform_sequence(const char* model, const char* cage, const char* const* posed,
+                                  const cw_array* positions, size_t count, const char* const* outs,
+                                  size_t out_count, const cw_sequence_options* options,
+                                  const cw_control* control, char** notes, cw_error** error);
 
 /* ---- Pictures -------------------------------------------------------------------------------- */
 
