@@ -2,6 +2,7 @@
 #include "calls.h"
 #include "handles.h"
 
+#include "io/source.h"
 #include "report/cage_figures.h"
 #include "report/cage_report.h"
 #include "report/compared_cage.h"
@@ -85,8 +86,9 @@ Status make_cage(const cw_mesh_view* model, const cw_options* asked, const Progr
   if (asked != nullptr && !asked->density.empty()) {
     const std::size_t vertices = mesh->triangles().positions.size();
     if (asked->density.size() != vertices) {
-      return Error{ErrorCode::mismatch, "the density has " + std::to_string(asked->density.size()) +
-                                            " weights, but the model " + std::to_string(vertices) +
+      return Error{ErrorCode::mismatch, "the density has " +
+                                            counted(asked->density.size(), "weight") +
+                                            ", but the model " + std::to_string(vertices) +
                                             " vertices; give one for each"};
     }
     options.density = asked->density;

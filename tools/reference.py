@@ -8,6 +8,7 @@ reference.py PROGRAM --check PAGE     1 if the page is not what the program says
 """
 
 import argparse
+import difflib
 import gzip
 import json
 import pathlib
@@ -334,6 +335,8 @@ def main():
     elif arguments.renew:
         arguments.renew.write_text(markdown(table))
     elif arguments.check.read_text() != markdown(table):
+        print(*difflib.unified_diff(arguments.check.read_text().splitlines(), markdown(table).splitlines(), str(arguments.check),
+                                    str(arguments.program), n=0, lineterm=""), sep="\n")
         sys.exit(f"{arguments.check} is not what the program says: run tools/reference.py {arguments.program} --renew "
                  f"{arguments.check}")
 

@@ -30,13 +30,18 @@ def rest_of(model):
         return geometry.model_of(model, as_shown=not binding.is_bound(model) or model.cagewright.pose != "REST")
 
 
-def report_on(cage, max_listed=100000):
-    """What Cagewright says of a cage and its models, in the world; and the models' points."""
+def models_in_world(cage):
+    """The models of a cage, as it has to enclose them: points, faces, and where floats are reckoned from."""
     models = models_for(cage)
     if not models:
         raise Failure(f"{cage.name} is the cage of no model: bind a model to it first")
     points, faces = geometry.together([rest_of(model) for model in models])
-    home = np.array(cage.matrix_world.translation, np.float64)
+    return points, faces, np.array(cage.matrix_world.translation, np.float64)
+
+
+def report_on(cage, max_listed=100000):
+    """What Cagewright says of a cage and its models, in the world; and the models' points."""
+    points, faces, home = models_in_world(cage)
     cage_points = geometry.transformed(geometry.points_of(cage.data), geometry.matrix_of(cage.matrix_world))
     return engine.get().check(points - home, faces, cage_points - home, geometry.faces_of(cage.data), max_listed,
                               threads=threads()), points

@@ -1,5 +1,6 @@
 """Fit: a cage for a model that was edited. Mirror: one side of a cage as the other."""
 
+import contextlib
 import json
 
 import bpy
@@ -7,8 +8,9 @@ import numpy as np
 from mathutils import Vector
 from mathutils.kdtree import KDTree
 
-from . import binding, check_cage, follow, geometry
+from . import binding, check_cage, engine, follow, geometry
 from .engine import Failure
+from .preferences import threads
 
 _ROUNDS = 40        # of pushing outward, at most
 _CLEARANCE = 0.002  # parts of the diagonal that a vertex is pushed beyond what was outside
@@ -97,10 +99,47 @@ def _pushed(cage, report, points):
 _MENDABLE = {"face_contact", "vertex_outside", "vertex_on_cage"}
 
 
+def _push(cage):
+    """Pushes the cage outward until it is valid. Failure: that does not help."""
+    for _ in range(_ROUNDS):
+        report, points = check_cage.report_on(cage)
+        if report["valid"]:
+            return
+        if {kind for kind, count in report["counts"].items() if count} - _MENDABLE:
+            break
+        move_vertices(cage, _pushed(cage, report, points))
+        bpy.context.view_layer.update()
+    raise Failure(f"{check_cage.in_words(report)}; generate a new cage")
+
+
+def _lay(cage):
+    """Moves the vertices of the cage to where it is valid and tight. Failure: they cannot be laid so."""
+    points, faces, home = check_cage.models_in_world(cage)
+    world = geometry.matrix_of(cage.matrix_world)
+    own = geometry.transformed(geometry.points_of(cage.data), world)
+    made = engine.get().generate(points - home, faces, {}, threads(), start=(own - home, geometry.faces_of(cage.data)))
+    move_vertices(cage, (made.vertices + home - own) @ np.linalg.inv(world)[:3, :3].T)
+    bpy.context.view_layer.update()
+
+
 def fit(cage):
     """Moves the vertices of a cage until it is valid for its models again; its faces stay. Failure: it cannot be."""
     start = np.empty(3 * len(cage.data.vertices), np.float32)
     cage.data.vertices.foreach_get("co", start)
+    _go_along_with_edits(cage)
+    try:
+        if not check_cage.report_on(cage)[0]["valid"]:
+            with contextlib.suppress(Failure):
+                _lay(cage)
+            _push(cage)  # what Blender's floats leave to do; all of it where the cage could not be laid so
+    except Failure as failure:
+        now = np.empty_like(start)
+        cage.data.vertices.foreach_get("co", now)
+        move_vertices(cage, (start - now).reshape(-1, 3))
+        raise Failure(f"{cage.name} cannot be fitted: {failure}") from None
+
+
+def _go_along_with_edits(cage):
     for model in binding.models_bound_to(cage):
         before, after = _edits_of(model)
         if len(before) == len(after) and not np.array_equal(before, after):
@@ -108,19 +147,7 @@ def fit(cage):
             own = geometry.transformed(geometry.points_of(cage.data), world)
             moves = _carried(own, before, after)
             move_vertices(cage, moves @ np.linalg.inv(world)[:3, :3].T)
-    for _ in range(_ROUNDS):
-        bpy.context.view_layer.update()
-        report, points = check_cage.report_on(cage)
-        if report["valid"]:
-            return
-        other = {kind for kind, count in report["counts"].items() if count} - _MENDABLE
-        if other:
-            break
-        move_vertices(cage, _pushed(cage, report, points))
-    now = np.empty_like(start)
-    cage.data.vertices.foreach_get("co", now)
-    move_vertices(cage, (start - now).reshape(-1, 3))
-    raise Failure(f"{cage.name} cannot be fitted: {check_cage.in_words(report)}; generate a new cage")
+    bpy.context.view_layer.update()
 
 
 class CAGEWRIGHT_OT_fit(bpy.types.Operator):

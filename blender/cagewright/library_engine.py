@@ -25,8 +25,9 @@ class Engine:
     def describe(self):
         return f"Library {bindings.__version__}"
 
-    def generate(self, vertices, faces, options, threads=None, progress=None):
-        """A cage round a model. `options`: texts by their names on the command line."""
+    def generate(self, vertices, faces, options, threads=None, progress=None, start=None):
+        """A cage round a model. `options`: texts by their names on the command line. `start`: vertices and faces of a
+        cage whose faces, and the order of whose vertices, are kept."""
         named = {name.replace("-", "_"): text for name, text in options.items()}
         if "vertices" in named:
             named["num_vertices"] = named.pop("vertices")
@@ -37,7 +38,7 @@ class Engine:
                 named[name] = named[name] == "on"
         if "max_gap" in named or "num_faces" in named:
             named.setdefault("num_vertices", None)
-        made = _said(bindings.generate, vertices, faces, threads=threads, progress=progress, **named)
+        made = _said(bindings.generate, vertices, faces, threads=threads, progress=progress, start=start, **named)
         return Cage(made.vertices.copy(), made.corners.copy(), made.offsets.copy(), made.report)
 
     def check(self, vertices, faces, cage_vertices, cage_faces, max_listed, threads=None, progress=None):

@@ -86,11 +86,14 @@ class Engine:
                 lines = said.read().decode("utf-8", "replace").strip().splitlines()
                 raise Failure(lines[-1] if lines else f"the program ended with {running.returncode}")
 
-    def generate(self, vertices, faces, options, threads=None, progress=None):
+    def generate(self, vertices, faces, options, threads=None, progress=None, start=None):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             write_ply(folder / "model.ply", vertices, *faces)
             given = []
+            if start is not None:
+                write_ply(folder / "start.ply", start[0], *start[1])
+                given += ["--start", str(folder / "start.ply")]
             for option, text in options.items():
                 is_switch = option == "quads"
                 given += [f"--{option}"] * (text == "on") if is_switch else [f"--{option}", text]

@@ -1,5 +1,8 @@
 """Arrays of the caller's as the library reads them, and arrays of the library's as the caller sees them."""
 
+import os
+from collections.abc import Mapping
+
 import numpy as np
 
 from ._library import Array, MeshView
@@ -52,7 +55,10 @@ def array_of(numbers, what, dtype=None):
 
 def points(numbers, what):
     """N x 3 coordinates. Integers become doubles; doubles and floats stay where they are."""
-    return array_of(numbers, what, np.float64)
+    array, keep = array_of(numbers, what, np.float64)
+    if keep.shape[1] == 1 and keep.size:
+        raise ValueError(f"{what}: one row of {keep.size} numbers, not rows of x, y, z; reshape(-1, 3) makes rows of it")
+    return array, keep
 
 
 def finite_points(numbers, what):
@@ -69,9 +75,13 @@ def _has(thing, *names):
 
 
 def parts_of(mesh):
-    """The vertices and faces of an object of another library, or None where it is no mesh."""
+    """The vertices and faces of a pair, or of an object of another library; or None where it is no mesh."""
     if isinstance(mesh, np.ndarray):
         return None
+    if isinstance(mesh, tuple):  # (vertices, faces); but a pair of rows is no mesh
+        return mesh if len(mesh) == 2 and np.ndim(mesh[0]) == 2 else None
+    if isinstance(mesh, Mapping):
+        return (mesh["vertices"], mesh["faces"]) if "vertices" in mesh and "faces" in mesh else None
     if _has(mesh, "vertices", "corners", "offsets"):  # ours
         counts = np.diff(mesh.offsets)
         is_even = counts.size and (counts == counts[0]).all()
@@ -79,13 +89,28 @@ def parts_of(mesh):
     for vertices, faces in [("vertices", "faces"), ("points", "faces"), ("vertices", "triangles")]:
         if _has(mesh, vertices, faces):  # trimesh; PyVista; Open3D
             return getattr(mesh, vertices), getattr(mesh, faces)
+    if _has(mesh, "points", "cells") and isinstance(mesh.cells, list):  # meshio
+        return mesh.points, _faces_of_cells(mesh.cells)
     return None
+
+
+def _faces_of_cells(blocks):
+    """The faces among cells of meshio's kinds: lines and points are none."""
+    faces = []
+    for block in blocks:
+        if block.type in ("triangle", "quad", "polygon"):
+            faces.extend(np.asarray(block.data).tolist())
+        elif block.type not in ("vertex", "line"):
+            raise TypeError(f"cells of the kind {block.type} are no surface; extract the surface first")
+    return faces
 
 
 def two_parts(vertices, faces, what):
     """Vertices and faces, given apart or as one object."""
     if faces is not None:
         return vertices, faces
+    if isinstance(vertices, (str, bytes, os.PathLike)):
+        raise TypeError(f"{what}: a path, not a mesh; read_mesh() reads the file")
     parts = parts_of(vertices)
     if parts is None:
         raise TypeError(f"{what}: faces are missing; give vertices and faces, or an object that has both")
@@ -132,12 +157,25 @@ def _lists(rows, what):
     return corners, np.concatenate([[0], np.cumsum(counts)])
 
 
+def _are_corners_and_offsets(faces):
+    """Whether a pair is (corners, offsets) rather than two faces."""
+    if not isinstance(faces, tuple) or len(faces) != 2:
+        return False
+    if all(isinstance(part, np.ndarray) and part.ndim == 1 for part in faces):
+        return True
+    if not all(isinstance(part, (list, np.ndarray)) and np.ndim(part) == 1 and len(part) for part in faces):
+        return False
+    begins = np.asarray(faces[1])  # lists: only where they are what offsets must be
+    return begins[0] == 0 and (np.diff(begins) >= 3).all() and begins[-1] <= len(faces[0])
+
+
 def _faces(faces, what):
     """The Array of faces and that of offsets, and what must stay alive."""
     offsets = None
-    if isinstance(faces, tuple) and len(faces) == 2 and all(isinstance(part, np.ndarray) and part.ndim == 1
-                                                           for part in faces):
-        corners, offsets = faces
+    if hasattr(faces, "__next__"):
+        faces = list(faces)
+    if _are_corners_and_offsets(faces):
+        corners, offsets = map(np.asarray, faces)
     else:
         is_ragged = isinstance(faces, (list, tuple)) and len({len(row) for row in faces if hasattr(row, "__len__")}) > 1
         corners = None if is_ragged else np.asarray(faces)

@@ -1,6 +1,8 @@
 """Cages: made, judged, compared; and what can be said of a model without one."""
 
 import ctypes
+import difflib
+import inspect
 import json
 import warnings
 from collections import namedtuple
@@ -8,10 +10,10 @@ from collections import namedtuple
 import numpy as np
 
 from . import _arrays
-from ._calls import run
+from ._calls import run, whole_number
 from ._library import Handle, MeshView, checked, lib, take_text
 from ._meshes import Mesh, arrays_of
-from .errors import NotAsAsked
+from .errors import NotAsAsked, error_of
 
 
 class _Default(int):
@@ -61,10 +63,25 @@ def options():
     return json.loads(take_text(out.value))
 
 
+def _bytes_of(text):
+    """Text as the library takes it. A NUL would cut it short."""
+    return text.replace("\0", "\N{REPLACEMENT CHARACTER}").encode(errors="surrogateescape")
+
+
+def _refuse_unknown(names):
+    known = [option["name"].replace("-", "_") for option in options()]
+    arguments = [name for name in inspect.signature(generate).parameters if name not in ("vertices", "faces", "options")]
+    for name in names:
+        if name.replace("-", "_") not in known:
+            near = difflib.get_close_matches(name, arguments + known, 1)
+            raise error_of("invalid_option", f"generate() has no option {name}"
+                           + (f"; did you mean {near[0]}?" if near else "; cagewright.options() lists those there are"))
+
+
 def _options(given):
     handle = Handle(lib.cw_options_new(), lib.cw_options_free)
     for name, value in given.items():
-        checked(lib.cw_options_set, handle.pointer, name.replace("_", "-").encode(), _text(value).encode())
+        checked(lib.cw_options_set, handle.pointer, _bytes_of(name.replace("_", "-")), _bytes_of(_text(value)))
     return handle
 
 
@@ -78,8 +95,9 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
     every vertex of the model strictly inside, no face of the model touching it.
 
     Args:
-        vertices: the model, V x 3 numbers (float64 is read where it is, without a copy); or an object that has both
-            vertices and faces (trimesh, PyVista, Open3D, what read_mesh() returns).
+        vertices: the model, V x 3 numbers (float64 is read where it is, without a copy); or one thing that has both
+            vertices and faces: what read_mesh() returns, a mesh of trimesh, PyVista, Open3D or meshio, a tuple of two,
+            a dict with "vertices" and "faces".
         faces: integers of any width, counted from 0, one of
               - F x 3 triangles, F x 4 quads; -1 fills up shorter faces,
               - a list of lists of corners,
@@ -121,6 +139,7 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
     """
     vertices, faces = _arrays.two_parts(vertices, faces, "the model")
     model = _arrays.mesh_view(vertices, faces, "the model")
+    _refuse_unknown(options)
     given = {name: value for name, value in options.items() if value is not None}
     quads = quads if isinstance(quads, str) else bool(quads)
     for name, value, initial in [("method", method, "envelope"), ("symmetry", symmetry, "auto"),
@@ -203,7 +222,7 @@ def check(vertices, faces=None, cage_vertices=None, cage_faces=None, *, allow_pi
         cage_vertices, cage_faces: the cage, likewise. Objects that have both may stand for either: check(model, cage).
         allow_pieces: accept several closed pieces.
         allow_inner_shells: accept closed pieces within others, oriented inward.
-        max_listed: how many violations of each kind are listed; all are counted.
+        max_listed: how many violations of each kind are listed, None for all; all are counted.
         threads, progress: as for generate().
 
     Returns:
@@ -215,6 +234,7 @@ def check(vertices, faces=None, cage_vertices=None, cage_faces=None, *, allow_pi
     parts = _arrays.four_parts(vertices, faces, cage_vertices, cage_faces)
     model = _arrays.mesh_view(*parts[:2], "the model")
     cage = _arrays.mesh_view(*parts[2:], "the cage")
+    max_listed = 2**31 - 1 if max_listed is None else whole_number(max_listed, "max_listed")
     flags = (1 if allow_pieces else 0) + (2 if allow_inner_shells else 0)
 
     def work(control):
@@ -229,8 +249,6 @@ def check(vertices, faces=None, cage_vertices=None, cage_faces=None, *, allow_pi
 
 
 def _parts_of_cage(cage):
-    if isinstance(cage, tuple) and len(cage) == 2:
-        return cage
     return _arrays.two_parts(cage, None, "the cage")
 
 
@@ -291,6 +309,7 @@ def info(vertices, faces=None, *, resolution=64, threads=None, progress=None):
     """
     vertices, faces = _arrays.two_parts(vertices, faces, "the model")
     model = _arrays.mesh_view(vertices, faces, "the model")
+    resolution = whole_number(resolution, "resolution", 1)
 
     def work(control):
         out = ctypes.c_void_p()

@@ -29,6 +29,17 @@ def _count(threads):
     return min(number, _MOST_THREADS)
 
 
+def whole_number(value, what, least=0):
+    """An integer of any type, for the library."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise ValueError(f"{what}: {value!r} is not a whole number") from None
+    if not least <= number < 2**31:
+        raise ValueError(f"{what}: {value!r} is not from {least} on")
+    return number
+
+
 class _Call:
     """One run of a function of the library: `work(control)` on a thread of its own."""
 
@@ -91,6 +102,8 @@ def run(work, threads, progress):
     Whatever is raised while we wait, KeyboardInterrupt above all, stops the work. `progress(fraction, step)` is called
     on the thread of the caller; where it returns False the work stops, and Cancelled is raised.
     """
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: {progress!r} cannot be called; give a function of a fraction and a step, or None")
     call = _Call(work, threads, progress is not None)
     call.start()
     try:
@@ -109,4 +122,4 @@ def run(work, threads, progress):
     return call.result()
 
 
-__all__ = ["Cancelled", "checked", "control", "run"]
+__all__ = ["Cancelled", "checked", "control", "run", "whole_number"]

@@ -77,7 +77,7 @@ def coordinates(kind, points, cage_vertices, cage_faces=None, *, sparse=False, t
     """
     cage_vertices, cage_faces = _arrays.two_parts(cage_vertices, cage_faces, "the cage")
     cage = _arrays.mesh_view(cage_vertices, cage_faces, "the cage")
-    where, keep = _arrays.points(points, "the points")
+    where, keep = _arrays.finite_points(points, "the points")
     kind, text = _kind_bytes(kind), _settings_text(settings)
     columns = ctypes.c_size_t()
     checked(lib.cw_coordinate_columns, kind, text, ctypes.byref(cage), ctypes.byref(columns))
@@ -172,6 +172,9 @@ class Deformer:
         if vertices.size and vertices.dtype.kind not in "iu":
             raise ValueError(f"the numbers of vertices are integers, not {vertices.dtype}; of a mask numpy.flatnonzero() makes them")
         which, keep = _arrays.array_of(vertices, "the numbers of vertices", np.int64)
+        if np.size(to) != 3 * np.size(vertices) or np.shape(to)[-1:] != (3,):
+            raise ValueError(f"the positions: x, y, z for each of {np.size(vertices)} vertices, not numbers of the shape "
+                             f"{np.shape(to)}")
         where, keep_too = _arrays.finite_points(np.reshape(to, (-1, 3)), "the positions")
         checked(lib.cw_deformer_move, self._handle.pointer, ctypes.byref(which), ctypes.byref(where),
                 ctypes.byref(self._control))

@@ -76,7 +76,7 @@ def read_mesh(source, *, format=None, pose="shown"):
     """Reads an OBJ, PLY, STL, OFF, GLB or glTF file.
 
     Args:
-        source: a path, or the bytes of a file.
+        source: a path, the bytes of a file, or an open binary file.
         format: of bytes: "obj", "ply", "stl", "off" or "gltf"; None: told by the content.
         pose: of a rigged glTF model: "shown", as a viewer shows it, or "bind", as it was bound to its joints.
 
@@ -90,6 +90,12 @@ def read_mesh(source, *, format=None, pose="shown"):
     """
     if pose not in _POSES:
         raise ValueError(f'pose: {pose!r} is neither "shown" nor "bind"')
+    if format is not None and not isinstance(format, str):
+        raise ValueError(f"format: {format!r} is none of obj, ply, stl, off and gltf")
+    if hasattr(source, "read"):
+        source = source.read()
+        if isinstance(source, str):
+            raise TypeError('a file that was opened as text; open it with "rb", or give its path')
     out = ctypes.c_void_p()
     if isinstance(source, (bytes, bytearray, memoryview)):
         content = bytes(source)
@@ -113,6 +119,7 @@ def write_mesh(path, vertices, faces=None):
 
     >>> cagewright.write_mesh("cage.obj", *cage)
     """
+    name = path_bytes(path)
     vertices, faces = _arrays.two_parts(vertices, faces, "the mesh")
     mesh = _arrays.mesh_view(vertices, faces, "the mesh")
-    checked(lib.cw_write_mesh, ctypes.byref(mesh), path_bytes(path))
+    checked(lib.cw_write_mesh, ctypes.byref(mesh), name)

@@ -1,6 +1,7 @@
 """Pictures without a display."""
 
 import ctypes
+import math
 
 from . import _arrays
 from ._calls import run
@@ -16,11 +17,18 @@ def _angles(view):
             raise ValueError(f"views: {view!r} is none of front, back, left, right, side, top, bottom, three-quarter, "
                              "and no pair (yaw, pitch) of degrees")
         return tuple(angles)
-    yaw, pitch = view
-    return float(yaw), float(pitch)
+    try:
+        yaw, pitch = map(float, view)
+        if math.isfinite(yaw) and math.isfinite(pitch):
+            return yaw, pitch
+    except (TypeError, ValueError):
+        pass
+    raise ValueError(f"views: {view!r} is no pair (yaw, pitch) of degrees")
 
 
 def _is_one(views):
+    if not hasattr(views, "__len__"):
+        raise ValueError(f"views: {views!r} is no view, and no list of views")
     return isinstance(views, str) or (len(views) == 2 and not any(isinstance(part, (str, tuple, list)) for part in views))
 
 

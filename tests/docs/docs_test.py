@@ -133,6 +133,40 @@ class Commands(unittest.TestCase):
                 Page(path, pathlib.Path(folder)).run()
 
 
+class Routes(unittest.TestCase):
+    """What docs/routes.md shows of C and C++ is true, too."""
+
+    def block(self, language):
+        text = (SOURCE / "docs" / "routes.md").read_text()
+        return next(block["text"] for block in BLOCK.finditer(text) if block["language"] == language)
+
+    def test_c(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            write_models(folder)
+            text = self.block("c").replace('"60", NULL)', '"60", NULL) || cw_options_set(options, "rounds", "0", NULL) || '
+                                           'cw_options_set(options, "envelope-resolution", "16", NULL)')
+            text = text.replace("/* pose it: posed.obj */", 'cw_write_mesh(&view, "posed.obj", NULL) ||')
+            (folder / "route.c").write_text("#include <cagewright/c/cagewright.h>\nint main(void) {\n" + text + "return failed;\n}\n")
+            library = (PACKAGE / "cagewright" / "libcagewright.so").resolve().parent
+            self.run_words(folder, "cc", "-std=c99", "-Wall", "-Werror", "route.c", "-o", "route", f"-I{SOURCE / 'include'}",
+                           f"-L{library}", f"-Wl,-rpath,{library}", "-lcagewright")
+            self.run_words(folder, "./route")
+            self.assertTrue((folder / "armadillo_posed.off").exists())
+
+    def test_cpp(self):
+        text = self.block("cpp")
+        with tempfile.TemporaryDirectory() as name:
+            (pathlib.Path(name) / "route.cpp").write_text(
+                "#include <cagewright/cagewright.h>\nusing namespace cagewright;\nint main() {\n" + text + "}\n")
+            self.run_words(name, os.environ.get("CXX", "c++"), "-std=c++20", "-fsyntax-only", f"-I{SOURCE / 'include'}",
+                           f"-I{PACKAGE.parent / 'include'}", "-isystem", "/usr/include/eigen3", "route.cpp")
+
+    def run_words(self, folder, *words):
+        done = subprocess.run(words, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+
 class Pages(unittest.TestCase):
     def test_commands_are_marked_as_such(self):
         for path in PAGES:
@@ -163,6 +197,12 @@ class Pages(unittest.TestCase):
         reference = (SOURCE / "docs" / "reference.md").read_text()
         for command in commands:
             self.assertIn(f"\n## {command}\n", reference)
+
+    def test_the_reference_is_what_the_program_says(self):
+        """tools/reference.py renews the page after a change of options."""
+        said = subprocess.run([sys.executable, str(SOURCE / "tools" / "reference.py"), str(PROGRAM), "--check",
+                               str(SOURCE / "docs" / "reference.md")], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(said.returncode, 0, said.stdout)
 
     def test_completion_is_what_shells_take(self):
         with tempfile.TemporaryDirectory() as folder:

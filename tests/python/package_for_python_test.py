@@ -6,8 +6,10 @@ package_for_python_test.py FOLDER_OF_PACKAGE PROGRAM [unittest arguments]
 import ast
 import contextlib
 import gc
+import importlib.util
 import inspect
 import io
+import os
 import pathlib
 import pickle
 import re
@@ -133,6 +135,22 @@ class ArraysIn(unittest.TestCase):
                           (model, CAGE.vertices, CAGE.faces)]:
             self.assertTrue(cagewright.check(*arguments))
 
+    def test_pairs_and_whole_meshes(self):
+        cells = [Thing(type="line", data=np.array([[0, 1]])), Thing(type="triangle", data=F)]
+        for mesh in ((V, F), (V.tolist(), F.tolist()), {"vertices": V, "faces": F}, Thing(points=V, cells=cells)):  # meshio
+            self.assert_same(mesh)
+            self.assertTrue(cagewright.check(mesh, CAGE))
+            self.assertTrue(cagewright.check(mesh, tuple(CAGE)))
+        self.assert_same(V, iter(F.tolist()))
+        self.assert_same(V, (F.ravel().tolist(), list(range(0, F.size + 1, 3))))
+        self.assert_same(V, (F.ravel().tolist(), 3 * np.arange(len(F))))
+        two = [[0, 12, 13], [0, 13, 1]]  # not corners and offsets
+        expected = cagewright.info(V, np.array(two), resolution=8)
+        for faces in (two, tuple(two), tuple(map(tuple, two))):
+            self.assertEqual(cagewright.info(V, faces, resolution=8), expected)
+        with self.assertRaisesRegex(TypeError, "tetra are no surface"):
+            cagewright.info(Thing(points=V, cells=[Thing(type="tetra", data=F)]))
+
     def test_are_not_copied(self):
         # That the library does not copy what it is pointed to is tested in C++: tests/c/arrays_test.cpp.
         for kind in ("int32", "uint32"):
@@ -171,6 +189,29 @@ class ArraysIn(unittest.TestCase):
             self.assertIn(words, str(raised.exception))
         with self.assertRaisesRegex(TypeError, "faces are missing"):
             cagewright.generate(V)
+        deformer = cagewright.Deformer(V, F, CAGE)
+        for wrong, words in [
+            (lambda: cagewright.generate("model.obj"), "read_mesh"),
+            (lambda: cagewright.generate(V.ravel(), F), "reshape"),
+            (lambda: cagewright.generate(V, F, num_vertice=60), "did you mean num_vertices"),
+            (lambda: cagewright.generate(V, F, depth="1\0"), "depth: "),
+            (lambda: cagewright.generate(V, F, depth="\udc80"), "depth: "),
+            (lambda: cagewright.generate(V, F, progress=3), "progress: 3 cannot be called"),
+            (lambda: cagewright.info(V, F, resolution=8.0), "resolution: 8.0 is not a whole number"),
+            (lambda: cagewright.check(V, F, CAGE, max_listed=-1), "max_listed: -1"),
+            (lambda: cagewright.coordinates("mean_value", V[0], CAGE), "reshape"),
+            (lambda: cagewright.coordinates("mean_value", [[0, 0, float("nan")]], CAGE), "row 0 .* not a finite"),
+            (lambda: cagewright.coordinates("mean_value", V, CAGE, teapot=3), "^teapot: "),
+            (lambda: deformer.move(1, [0, 0]), "x, y, z for each"),
+            (lambda: deformer.move(1, None), "x, y, z for each"),
+            (lambda: cagewright.read_mesh(b"v 0 0 0", format=3), "format: 3"),
+            (lambda: cagewright.read_mesh(io.StringIO("v 0 0 0")), "rb"),
+            (lambda: cagewright.write_mesh(V, F, "cage.obj"), "PathLike"),
+            (lambda: cagewright.render(V, F, views=None), "views: None"),
+            (lambda: cagewright.render(V, F, views=(float("nan"), 0)), "views: "),
+        ]:
+            with self.subTest(words=words), self.assertRaisesRegex((ValueError, TypeError), words):
+                wrong()
         with self.assertRaisesRegex(TypeError, "the cage is missing"):
             cagewright.check(V, F)
 
@@ -441,6 +482,8 @@ class Others(InAFolder):
             self.assertEqual(mesh.faces.tolist(), QUADS.tolist())
             again = cagewright.read_mesh(path.read_bytes(), format=name[-3:])
             self.assertEqual(again.vertices.tobytes(), V.tobytes())
+        with (self.folder / "mesh.ply").open("rb") as file:
+            self.assertEqual(cagewright.read_mesh(file).vertices.tobytes(), V.tobytes())
         self.assertEqual(len(cagewright.read_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").vertices), 3)
         colored = cagewright.read_mesh(b"o part\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n")
         self.assertEqual(colored.colors.tolist()[0], [1, 0, 0, 1])
@@ -660,6 +703,13 @@ class Words(unittest.TestCase):
                 names += [arguments.vararg.arg] if arguments.vararg else []
                 names += [a.arg for a in arguments.kwonlyargs] + ([arguments.kwarg.arg] if arguments.kwarg else [])
                 self.assertEqual(names, list(inspect.signature(thing).parameters), name)
+
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+    def test_stubs_are_what_mypy_finds_there(self):
+        said = subprocess.run([sys.executable, "-m", "mypy.stubtest", "cagewright", "--ignore-missing-stub"], capture_output=True,
+                              text=True, env={**os.environ, "PYTHONPATH": str(PACKAGE), "MYPYPATH": str(PACKAGE)}).stdout
+        self.assertIn("modules", said)
+        self.assertEqual(re.findall(r"^error: cagewright\.[^_].*", said, re.M), [])
 
     def test_the_documentation_runs(self):
         text = (SOURCE / "docs" / "python.md").read_text()
