@@ -8,16 +8,37 @@
 #include <cagewright/deform/deformer.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 using namespace cagewright;
 using namespace cagewright::c;
 
 struct cw_deformer {
   Deformer deformer;
+};
+
+struct cw_sparse {
+  std::size_t column_count = 0;
+  std::vector<double> values;
+  std::vector<std::uint32_t> columns;
+  std::vector<std::uint64_t> offsets = {0};
+
+  void add_row(const Weights& weights, std::size_t p) {
+    for (std::size_t k = 0; k < column_count; ++k) {
+      if (const double weight = weights.at(p, k); weight != 0) {
+        values.push_back(weight);
+        columns.push_back(static_cast<std::uint32_t>(k));
+      }
+    }
+    offsets.push_back(values.size());
+  }
 };
 
 namespace {
@@ -44,18 +65,12 @@ Result<CoordinateSettings> coordinates_named(const char* kind, const char* setti
   return named ? named : Error{named.error().code, without_dashes(named.error().message)};
 }
 
-/// Rows of the caller's from tiles of ours.
-void store(const Weights& weights, double* rows, std::size_t row) {
-  for (std::size_t p = 0; p < weights.points(); ++p) {
-    for (std::size_t k = 0; k < weights.columns(); ++k) {
-      rows[p * row + k] = weights.at(p, k);
-    }
-  }
-}
+/// Is shown the weights of some points, of which the first has this number.
+using WeightsSeen = std::function<void(const Weights& weights, std::size_t first)>;
 
-Status solve(const Coordinates& coordinates, std::span<const Vec3> points, double* weights,
-             std::size_t row, const Progress& progress) {
-  // Some at a time: the matrix stands in memory once, in the caller's.
+/// Some at a time: all weights stand in memory once, in whatever the caller makes of them.
+Status solve(const Coordinates& coordinates, std::span<const Vec3> points, const WeightsSeen& seen,
+             const Progress& progress) {
   constexpr std::size_t some = 16 * Weights::tile_points;
   const auto count = static_cast<double>(points.size());
   for (std::size_t first = 0; first < points.size(); first += some) {
@@ -66,10 +81,40 @@ Status solve(const Coordinates& coordinates, std::span<const Vec3> points, doubl
     if (!solved) {
       return solved.error();
     }
-    store(solved->weights, weights + first * row, row);
+    seen(solved->weights, first);
   }
   return success();
 }
+
+/// What both forms of weights are made of.
+struct AskedCoordinates {
+  Points points;
+  std::shared_ptr<const Coordinates> coordinates;
+
+  static Result<AskedCoordinates> of(const char* kind, const char* settings, const cw_array* points,
+                                     const cw_mesh_view* cage, const Progress& progress) {
+    const Result<CoordinateSettings> options = coordinates_named(kind, settings);
+    if (!options) {
+      return options.error();
+    }
+    if (const Status there = all_given({{points, "the array of points"}}); !there) {
+      return there.error();
+    }
+    Result<Points> given = Points::of(*points, "the points");
+    if (!given) {
+      return given.error();
+    }
+    const Result<MeshArgument> mesh = MeshArgument::of(cage, "the cage");
+    if (!mesh) {
+      return mesh.error();
+    }
+    auto prepared = prepare_coordinates(mesh->polygons(), *options, progress);
+    if (!prepared) {
+      return prepared.error();
+    }
+    return AskedCoordinates{std::move(*given), std::move(*prepared)};
+  }
+};
 
 Result<WeightStorage> storage_of(cw_storage storage) {
   switch (storage) {
@@ -167,39 +212,84 @@ cw_code cw_coordinates(const char* kind, const char* settings, const cw_array* p
                        const cw_mesh_view* cage, const cw_control* control, double* weights,
                        size_t row, cw_error** error) {
   return call(error, control, [&](const Progress& progress) -> Status {
-    const Result<CoordinateSettings> options = coordinates_named(kind, settings);
-    if (!options) {
-      return options.error();
+    const auto asked = AskedCoordinates::of(kind, settings, points, cage, progress.part(0, 0.2));
+    if (!asked) {
+      return asked.error();
     }
-    if (Status there = all_given({{points, "the array of points"}}); !there) {
-      return there;
-    }
-    const Result<Points> given = Points::of(*points, "the points");
-    if (!given) {
-      return given.error();
-    }
-    const Result<MeshArgument> mesh = MeshArgument::of(cage, "the cage");
-    if (!mesh) {
-      return mesh.error();
-    }
-    const auto coordinates = prepare_coordinates(mesh->polygons(), *options, progress.part(0, 0.2));
-    if (!coordinates) {
-      return coordinates.error();
-    }
-    const std::size_t columns = (*coordinates)->columns();
+    const std::size_t columns = asked->coordinates->columns();
     if (row != 0 && row < columns) {
       return Error{ErrorCode::invalid_option, "a row has " + std::to_string(columns) +
                                                   " weights, and does not fit into " +
                                                   std::to_string(row)};
     }
-    if (!given->view().empty()) {
+    if (!asked->points.view().empty()) {
       if (Status there = all_given({{weights, "the place for the weights"}}); !there) {
         return there;
       }
     }
-    return solve(**coordinates, given->view(), weights, row != 0 ? row : columns,
-                 progress.part(0.2, 1));
+    const std::size_t step = row != 0 ? row : columns;
+    const auto store = [&](const Weights& some, std::size_t first) {
+      for (std::size_t p = 0; p < some.points(); ++p) {
+        for (std::size_t k = 0; k < columns; ++k) {
+          weights[(first + p) * step + k] = some.at(p, k);
+        }
+      }
+    };
+    return solve(*asked->coordinates, asked->points.view(), store, progress.part(0.2, 1));
   });
+}
+
+cw_code cw_coordinates_sparse(const char* kind, const char* settings, const cw_array* points,
+                              const cw_mesh_view* cage, const cw_control* control, cw_sparse** out,
+                              cw_error** error) {
+  return call_for(out, error, control, [&](const Progress& progress) -> Status {
+    const auto asked = AskedCoordinates::of(kind, settings, points, cage, progress.part(0, 0.2));
+    if (!asked) {
+      return asked.error();
+    }
+    auto matrix = std::make_unique<cw_sparse>();
+    matrix->column_count = asked->coordinates->columns();
+    const auto keep = [&](const Weights& some, std::size_t) {
+      for (std::size_t p = 0; p < some.points(); ++p) {
+        matrix->add_row(some, p);
+      }
+    };
+    if (Status solved =
+            solve(*asked->coordinates, asked->points.view(), keep, progress.part(0.2, 1));
+        !solved) {
+      return solved;
+    }
+    *out = matrix.release();
+    return success();
+  });
+}
+
+void cw_sparse_free(cw_sparse* matrix) {
+  delete matrix;
+}
+
+size_t cw_sparse_row_count(const cw_sparse* matrix) {
+  return matrix != nullptr ? matrix->offsets.size() - 1 : 0;
+}
+
+size_t cw_sparse_column_count(const cw_sparse* matrix) {
+  return matrix != nullptr ? matrix->column_count : 0;
+}
+
+size_t cw_sparse_value_count(const cw_sparse* matrix) {
+  return matrix != nullptr ? matrix->values.size() : 0;
+}
+
+const double* cw_sparse_values(const cw_sparse* matrix) {
+  return matrix != nullptr ? matrix->values.data() : nullptr;
+}
+
+const uint32_t* cw_sparse_columns(const cw_sparse* matrix) {
+  return matrix != nullptr ? matrix->columns.data() : nullptr;
+}
+
+const uint64_t* cw_sparse_offsets(const cw_sparse* matrix) {
+  return matrix != nullptr ? matrix->offsets.data() : nullptr;
 }
 
 cw_code cw_coordinate_columns(const char* kind, const char* settings, const cw_mesh_view* cage,

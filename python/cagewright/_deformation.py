@@ -79,6 +79,8 @@ def coordinates(kind, points, cage_vertices, cage_faces=None, *, sparse=False, t
     cage = _arrays.mesh_view(cage_vertices, cage_faces, "the cage")
     where, keep = _arrays.finite_points(points, "the points")
     kind, text = _kind_bytes(kind), _settings_text(settings)
+    if sparse:
+        return _sparse(kind, text, where, cage, threads, progress)
     columns = ctypes.c_size_t()
     checked(lib.cw_coordinate_columns, kind, text, ctypes.byref(cage), ctypes.byref(columns))
 
@@ -90,11 +92,23 @@ def coordinates(kind, points, cage_vertices, cage_faces=None, *, sparse=False, t
 
     weights = run(work, threads, progress)
     del keep
-    if not sparse:
-        return weights
-    rows, columns = np.nonzero(weights)
-    begins = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=weights.shape[0]))])
-    return CSR(weights[rows, columns], columns.astype(np.int32), begins, weights.shape)
+    return weights
+
+
+def _sparse(kind, settings, points, cage, threads, progress):
+    """The weights that are not 0; the others are never in memory."""
+    def work(control):
+        out = ctypes.c_void_p()
+        checked(lib.cw_coordinates_sparse, kind, settings, ctypes.byref(points), ctypes.byref(cage), ctypes.byref(control),
+                ctypes.byref(out))
+        return Handle(out.value, lib.cw_sparse_free)
+
+    matrix = run(work, threads, progress)
+    count, rows = lib.cw_sparse_value_count(matrix.pointer), lib.cw_sparse_row_count(matrix.pointer)
+    return CSR(_arrays.view(matrix, lib.cw_sparse_values(matrix.pointer), (count,), "<f8"),
+               _arrays.view(matrix, lib.cw_sparse_columns(matrix.pointer), (count,), "<i4"),
+               _arrays.view(matrix, lib.cw_sparse_offsets(matrix.pointer), (rows + 1,), "<i8"),
+               (rows, lib.cw_sparse_column_count(matrix.pointer)))
 
 
 class Deformer:

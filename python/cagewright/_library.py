@@ -101,6 +101,14 @@ _FUNCTIONS = {
     "cw_info": (c_int, [_mesh, c_int, _control, _out, _out]),
     "cw_coordinate_columns": (c_int, [_text, _text, _mesh, POINTER(c_size_t), _out]),
     "cw_coordinates": (c_int, [_text, _text, _array, _mesh, _control, c_void_p, c_size_t, _out]),
+    "cw_coordinates_sparse": (c_int, [_text, _text, _array, _mesh, _control, _out, _out]),
+    "cw_sparse_free": (None, [_handle]),
+    "cw_sparse_row_count": (c_size_t, [_handle]),
+    "cw_sparse_column_count": (c_size_t, [_handle]),
+    "cw_sparse_value_count": (c_size_t, [_handle]),
+    "cw_sparse_values": (c_void_p, [_handle]),
+    "cw_sparse_columns": (c_void_p, [_handle]),
+    "cw_sparse_offsets": (c_void_p, [_handle]),
     "cw_coordinates_describe": (c_int, [_out, _out]),
     "cw_deformer_bind": (c_int, [_mesh, _mesh, POINTER(DeformerOptions), _control, _out, _out]),
     "cw_deformer_free": (None, [_handle]),
@@ -138,6 +146,9 @@ def _load():
         raise ImportError(f"cagewright: {name} has version {library.cw_abi_version()} of the C interface, not {ABI}; "
                           "install the library and the Python package from the same release")
     for function, (result, arguments) in _FUNCTIONS.items():
+        if not hasattr(library, function):
+            raise ImportError(f"cagewright: {name} is older than this Python package (it has no {function}); install both from "
+                              "the same release")
         getattr(library, function).restype = result
         getattr(library, function).argtypes = arguments
     return library

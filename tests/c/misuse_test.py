@@ -82,6 +82,7 @@ class Misuse(unittest.TestCase):
             ("cw_verdict", LIBRARY.cw_check, [model, cage, 0, ctypes.c_size_t(3), NULL]),
             ("cw_deformer", LIBRARY.cw_deformer_bind, [model, cage, NULL, NULL]),
             ("cw_image", LIBRARY.cw_render, [model, cage, NULL]),
+            ("cw_sparse", LIBRARY.cw_coordinates_sparse, [None, None, ctypes.byref(cls.model.positions), cage, NULL]),
         ]:
             out = ctypes.c_void_p()
             code = function(*words, ctypes.byref(out), NULL)
@@ -95,7 +96,8 @@ class Misuse(unittest.TestCase):
         byte = ctypes.create_string_buffer(4096)
         self.keep += [byte, bad_arrays]
         plain = kind.replace("const ", "").replace(" const", "")
-        if plain in ("cw_mesh*", "cw_cage*", "cw_verdict*", "cw_deformer*", "cw_image*", "cw_options*", "cw_stop*"):
+        if plain in ("cw_mesh*", "cw_cage*", "cw_verdict*", "cw_deformer*", "cw_image*", "cw_options*", "cw_stop*",
+                     "cw_sparse*"):
             return [ctypes.c_void_p(self.objects[plain[:-1]]), NULL]
         if plain == "cw_mesh_view*":
             wrong = [MeshView(array, self.model.faces, Array()) for array in bad_arrays]
@@ -145,7 +147,7 @@ class Misuse(unittest.TestCase):
 
     def test_nothing_crashes(self):
         tried = 0
-        frees = {f"{kind}_free" for kind in ("cw_mesh", "cw_cage", "cw_verdict", "cw_deformer", "cw_image", "cw_options",
+        frees = {f"{kind}_free" for kind in ("cw_mesh", "cw_cage", "cw_verdict", "cw_deformer", "cw_image", "cw_options", "cw_sparse",
                                              "cw_stop", "cw_error")}
         for result, name, types in functions():
             choices = [self.candidates(kind) for kind in types]

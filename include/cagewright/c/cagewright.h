@@ -278,6 +278,21 @@ CW_API cw_code cw_coordinates(const char* kind, const char* settings, const cw_a
                               const cw_mesh_view* cage, const cw_control* control, double* weights,
                               size_t row, cw_error** error);
 
+/// A matrix of which only what is not 0 is kept, row after row: as scipy's csr_matrix.
+typedef struct cw_sparse cw_sparse;
+CW_API void cw_sparse_free(cw_sparse* matrix);
+CW_API size_t cw_sparse_row_count(const cw_sparse* matrix);
+CW_API size_t cw_sparse_column_count(const cw_sparse* matrix);
+CW_API size_t cw_sparse_value_count(const cw_sparse* matrix);      ///< N
+CW_API const double* cw_sparse_values(const cw_sparse* matrix);    ///< N
+CW_API const uint32_t* cw_sparse_columns(const cw_sparse* matrix); ///< N: the column of each value
+CW_API const uint64_t* cw_sparse_offsets(const cw_sparse* matrix); ///< rows + 1, into the values
+
+/// What cw_coordinates() gives, P x K, without the zeros; all of it is never in memory at once.
+CW_API cw_code cw_coordinates_sparse(const char* kind, const char* settings, const cw_array* points,
+                                     const cw_mesh_view* cage, const cw_control* control,
+                                     cw_sparse** out, cw_error** error);
+
 /// K, the columns that cw_coordinates() writes for a cage.
 CW_API cw_code cw_coordinate_columns(const char* kind, const char* settings,
                                      const cw_mesh_view* cage, size_t* columns, cw_error** error);
