@@ -10,6 +10,7 @@
 #include <iostream>
 #include <map>
 #include <set>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -72,8 +73,12 @@ Status add_pattern(const std::string& pattern, std::vector<fs::path>& models) {
 }
 
 void add_lines(std::istream& lines, const fs::path& folder, std::vector<fs::path>& models) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   std::string line;
-  while (std::getline(lines, line)) {
+  for (bool is_first = true; std::getline(lines, line); is_first = false) {
+    if (is_first && line.starts_with(byte_order_mark)) { // as editors of Windows write it
+      line.erase(0, byte_order_mark.size());
+    }
     const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
     line.erase(std::find_if_not(line.rbegin(), line.rend(), is_blank).base(), line.end());
     line.erase(line.begin(), std::ranges::find_if_not(line, is_blank));

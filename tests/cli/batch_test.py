@@ -63,7 +63,8 @@ class Batch(unittest.TestCase):
         return said
 
     def table(self):
-        rows = list(csv.DictReader((self.out / "batch.csv").read_text().splitlines()))
+        with (self.out / "batch.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
         entries = json.loads((self.out / "batch.json").read_text())["models"]
         self.assertEqual([row["model"] for row in rows], [entry["model"] for entry in entries])
         return {row["model"]: row for row in rows}
@@ -157,6 +158,10 @@ class WhichModels(Batch):
         for name in ("a.obj", "b.obj", "c.OFF", "d/a.obj", "notes.doc", ".hidden.obj"):
             self.model(name, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n" if name == "c.OFF" else None)
         listed = self.models / "list.txt"
+        listed.write_text("\ufeffb.obj\n")  # as editors of Windows write it
+        self.run_batch(listed)
+        self.assertEqual(set(self.table()), {"b.obj"})
+        (self.out / "b.obj").unlink()
         listed.write_text("# models\n\na.obj  \r\nd/a.obj\nmissing.obj\n")
         self.run_batch(listed, expect=NOT_ALL)
         self.assertEqual(set(self.cages()), {"a.obj", "d/a.obj"})
@@ -189,7 +194,8 @@ class WhichModels(Batch):
         self.assertEqual((self.models / "a.obj").read_bytes(), before)
 
     def test_strange_names(self):
-        names = ["-a.obj", "b c.obj", "d'e\"f.obj", "g*.obj", "ü.obj", "--quads.obj"]
+        names = ["-a.obj", "b c.obj", "d'e\"f.obj", "g*.obj", "ü.obj", "--quads.obj", "two\nlines.obj", "tab\tthere, and.obj",
+                 "\x1b[31mred.obj", "back\\slash.obj", "$(touch made)`x`;.obj", "trailing .obj"]
         for name in names:
             self.model(name)
         self.run_batch(self.models)
@@ -275,6 +281,21 @@ class Resuming(Batch):
         before = [row for row in self.table().values() if row["from_before"] == "yes"]
         self.assertGreaterEqual(len(before), 3)
         self.assertEqual(self.cages(), expected)
+
+    def test_stopped_again_and_again(self):
+        """In every way, whenever it likes: in the end all is as if it had never been."""
+        names = [f"{i}.obj" for i in range(8)]
+        for i, name in enumerate(names):
+            self.model(name, cube(i))
+        for how in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
+            batch = self.start(self.models, "-o", self.out, "--jobs", 3, *QUICK)
+            batch.stdout.readline()  # one more is there
+            batch.send_signal(how)
+            batch.communicate()
+            self.assert_only_whole_files()
+        self.run_batch(self.models)
+        self.assertEqual(self.cages(), self.expected(QUICK))
+        self.assertEqual({name: row["status"] for name, row in self.table().items()}, dict.fromkeys(names, "done"))
 
     def test_stopped_by_ctrl_c(self):
         for i in range(3):

@@ -186,7 +186,7 @@ class EveryRoute(unittest.TestCase):
 
     def test_python(self):
         V, F = self.cagewright.read_mesh(self.model)
-        cage, out = self.folder / "p.obj", self.folder / f"p{self.model.suffix}"
+        cage, out = self.folder / "p.obj", self.folder / f"p-posed{self.model.suffix}"
         self.cagewright.write_mesh(cage, self.cagewright.generate(V, F, num_vertices=60))
         self.cagewright.deform_file(self.model, cage, self.posed, out)
         self.assert_same(cage, out)
@@ -197,7 +197,7 @@ class EveryRoute(unittest.TestCase):
         self.run_words("gcc", "-std=c99", source, "-o", built, f"-I{SOURCE / 'include'}", f"-L{library}",
                        f"-Wl,-rpath,{library.resolve()}", f"-Wl,-rpath,{(library / 'libcagewright.so').resolve().parent}",
                        "-lcagewright")
-        cage, out = self.folder / "c.obj", self.folder / f"c{self.model.suffix}"
+        cage, out = self.folder / "c.obj", self.folder / f"c-posed{self.model.suffix}"
         self.run_words(built, self.model, 60, cage, self.posed, out)
         self.assert_same(cage, out)
 
@@ -205,14 +205,14 @@ class EveryRoute(unittest.TestCase):
         program = PROGRAM.parent.parent / "examples" / "from_file_to_pose"
         if not program.exists():
             self.skipTest("the example is not built: target from_file_to_pose")
-        cage, out = self.folder / "x.obj", self.folder / f"x{self.model.suffix}"
+        cage, out = self.folder / "x.obj", self.folder / f"x-posed{self.model.suffix}"
         self.run_words(program, self.model, 60, cage, self.posed, out)
         self.assert_same(cage, out)
 
     def test_batch(self):
         out = self.folder / "batch"
         self.run_words(PROGRAM, "batch", self.models, "-o", out, "--vertices", 60)
-        posed = self.folder / f"b{self.model.suffix}"
+        posed = self.folder / f"b-posed{self.model.suffix}"
         self.run_words(PROGRAM, "deform", self.model, out / "model.obj", self.posed, "-o", posed)
         self.assert_same(out / "model.obj", posed)
 
