@@ -101,16 +101,18 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
         faces: integers of any width, counted from 0, one of
               - F x 3 triangles, F x 4 quads; -1 fills up shorter faces,
               - a list of lists of corners,
-              - a tuple of two arrays (corners, offsets),
+              - a tuple of two arrays (corners, offsets): face f has corners[offsets[f]:offsets[f + 1]],
               - one row 3, a, b, c, 4, d, e, f, g, ... as in PyVista.
-            The model may be open, inverted, self-intersecting, or in several pieces.
-        num_vertices: the cage has at most so many. Without num_faces and max_gap 100; with them, no limit unless given.
+            The model may be open, inverted, self-intersecting, or in several pieces. Bent quads are enclosed whichever way
+            they are cut into triangles.
+        num_vertices: the cage has at most so many vertices: 100 unless told otherwise, or no limit where num_faces or max_gap
+            is given instead.
         num_faces: it has at most so many faces, a quad being one.
         max_gap: makes the coarsest cage no point of which is farther from the model than this.
         quads: quads where they can be, as artists like to edit; the cage is valid along both diagonals of each.
         clearance: the least distance between cage and model.
         method: "envelope" (tight, any topology), "boxes" (the union of oriented boxes), or "boxes-improved".
-        symmetry: "auto" (mirrored where the model is), "off", or "x", "y", "z".
+        symmetry: "auto" (an exact mirror image of itself where the model nearly is), "off", or "x", "y", "z".
         pieces: of a model in pieces: "together" in one cage, or "apart" in one each.
         density: V weights above 0: four times the weight makes edges half as long there.
         start: a cage of your own, made by hand or for an earlier state of the model: an object with vertices and faces,
@@ -128,14 +130,16 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
         has so few vertices, say), the nearest valid cage is returned with a warning, NotAsAsked.
 
     Raises:
-        InputError: no cage can be made of such a model or with such options. NoValidCage: none was found.
+        InputError (a ValueError): no cage can be made of such a model or with such options. NoValidCage: none was found.
         Cancelled: progress returned False. KeyboardInterrupt: within half a second, with nothing half done.
 
     One to four seconds for 100 vertices round 50,000 triangles on two cores; quads take a few times as long.
 
     >>> V, F = cagewright.read_mesh("armadillo.off")
     >>> cage = cagewright.generate(V, F, num_vertices=60, quads=True)
-    >>> cagewright.write_mesh("cage.obj", *cage)
+    >>> cage.report["cage"]["volume_ratio"], cage.remarks           # how tight it is; what is not as asked for
+    >>> cagewright.write_mesh("cage.obj", cage)
+    >>> moved = cagewright.Deformer(V, F, cage)(cage.vertices * [1, 1.2, 1])
     """
     vertices, faces = _arrays.two_parts(vertices, faces, "the model")
     model = _arrays.mesh_view(vertices, faces, "the model")
