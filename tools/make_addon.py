@@ -9,6 +9,7 @@ import ctypes
 import json
 import pathlib
 import sys
+import tomllib
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -25,7 +26,16 @@ def described(library, function):
     return json.dumps(json.loads(text), indent=1) + "\n"
 
 
+def check_manifest():
+    """What Blender refuses in a manifest (Blender manual, "How to Create Extensions")."""
+    manifest = tomllib.loads((ROOT / "blender" / "cagewright" / "blender_manifest.toml").read_text())
+    for text in [manifest["tagline"], *manifest["permissions"].values()]:
+        if len(text) > 64 or not text[-1].isalnum():
+            sys.exit(f"make_addon.py: Blender takes 64 characters without a full stop, not: {text}")
+
+
 def pack(library, out):
+    check_manifest()
     loaded = ctypes.CDLL(str(library))
     folder = "cagewright"
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as packed:
