@@ -108,7 +108,10 @@ def read_mesh(source, *, format=None, pose="shown"):
 
 
 def write_mesh(path, vertices, faces=None):
-    """Writes an OBJ, PLY, STL or OFF file, by the extension. Reading it gives the same doubles.
+    """Writes an OBJ, PLY, STL, OFF, GLB or glTF file, by the extension.
+
+    Reading it gives the same doubles; but glTF holds floats, and triangles for all faces, and STL no vertices that triangles
+    share.
 
     Args:
         path: where to. The file appears only when it is complete.

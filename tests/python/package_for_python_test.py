@@ -482,6 +482,11 @@ class Others(InAFolder):
             self.assertEqual(mesh.faces.tolist(), QUADS.tolist())
             again = cagewright.read_mesh(path.read_bytes(), format=name[-3:])
             self.assertEqual(again.vertices.tobytes(), V.tobytes())
+        for name in ("mesh.glb", "mesh.gltf"):  # floats, and triangles
+            cagewright.write_mesh(self.folder / name, V, QUADS)
+            mesh = cagewright.read_mesh(self.folder / name)
+            self.assertLess(abs(mesh.vertices - V).max(), 1e-6)
+            self.assertEqual(len(mesh.faces), 2 * len(QUADS))
         with (self.folder / "mesh.ply").open("rb") as file:
             self.assertEqual(cagewright.read_mesh(file).vertices.tobytes(), V.tobytes())
         self.assertEqual(len(cagewright.read_mesh(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").vertices), 3)

@@ -183,8 +183,9 @@ CW_API cw_code cw_read_mesh(const char* path, cw_pose pose, cw_mesh** out, cw_er
 CW_API cw_code cw_parse_mesh(const void* bytes, size_t size, const char* format, const char* name,
                              cw_pose pose, cw_mesh** out, cw_error** error);
 
-/// Writes an OBJ, PLY, STL or OFF file, by the extension; reading it gives the same doubles. It
-/// appears under its name only when complete.
+/// Writes an OBJ, PLY, STL, OFF, GLB or glTF file, by the extension. Reading it gives the same
+/// doubles, but for glTF, which holds floats and triangles. It appears under its name only when
+/// complete.
 CW_API cw_code cw_write_mesh(const cw_mesh_view* mesh, const char* path, cw_error** error);
 
 /* ---- Cages ----------------------------------------------------------------------------------- */
