@@ -303,7 +303,7 @@ cw_code cw_coordinate_columns(const char* kind, const char* settings, const cw_m
     if (!mesh) {
       return mesh.error();
     }
-    const auto rule = options->kind().rule(mesh->polygons(), *options);
+    const auto rule = coordinate_rule(mesh->polygons(), *options);
     if (!rule) {
       return rule.error();
     }

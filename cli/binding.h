@@ -27,7 +27,7 @@ struct BindingOptions {
 Error about_file(const std::string& path, const Error& error);
 
 /// Declares the arguments MODEL and CAGE and the options of coordinates, --strict,
-/// --pose, --only and --cage-object.
+/// --mix, --mix-weights, --pose, --only and --cage-object.
 void add_binding_options(CLI::App& command, BindingOptions& options);
 
 Result<ModelAndCage> read_model_and_cage(const BindingOptions& options);
@@ -44,8 +44,8 @@ int fail_of_judge(const Error& error);
 Result<CoordinateSettings> chosen_settings(const BindingOptions& options,
                                            const ModelAndCage& meshes, const Session& session);
 
-/// The cage ready for binding; it may be open, of which judge() has warned.
-Result<std::shared_ptr<const Coordinates>> make_coordinates(const PolygonMesh& cage,
+/// The cage ready for binding the model; it may be open, of which judge() has warned.
+Result<std::shared_ptr<const Coordinates>> make_coordinates(const ModelAndCage& meshes,
                                                             const CoordinateSettings& settings,
                                                             const BindingOptions& options,
                                                             const Session& session);

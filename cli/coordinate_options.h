@@ -25,6 +25,8 @@ struct CoordinateArguments {
   std::string kind = std::string(CoordinateSettings().kind().name);
   const CLI::Option* given = nullptr;
   std::list<Value> values; // a list: CLI11 keeps references to the texts
+  std::string mix;         ///< another kind, or empty
+  std::string mix_weights; ///< where its share of each vertex stands, see shares_of_mix()
 };
 
 /// The word for the kind that carries the model best.
@@ -34,6 +36,9 @@ constexpr std::string_view best_kind = "auto";
 /// \param offer_best  --coordinates auto is allowed, too: see chosen_settings()
 void add_coordinate_options(CLI::App& command, CoordinateArguments& arguments,
                             bool offer_best = false);
+
+/// Declares --mix and --mix-weights.
+void add_mix_options(CLI::App& command, CoordinateArguments& arguments);
 
 /// What was asked for. Warns of options that the kind does not have.
 /// Errors: invalid_option.

@@ -6,7 +6,9 @@ one thread and many: all of them must be the same, byte for byte.
   same_bytes.py program=PATH --models samples ../models/bunny.obj --cases triangles:100 quads:120
 
 A case is a kind of cage and its budget, joined by ':': triangles:100 (vertices), quads:100 (faces),
-boxes:5 (depth). A variant is a program in a setting: with `threads`, 1 or 4 threads; with `plain`, the
+boxes:5 (depth), weights:20 (a cage of so many vertices, and the weights of every kind of coordinates in it:
+the same on any number of threads; programs that choose other vector instructions may differ in the last digit, see
+docs/coordinates.md). A variant is a program in a setting: with `threads`, 1 or 4 threads; with `plain`, the
 C library is told that the processor has neither AVX2 nor FMA (GLIBC_TUNABLES), and picks other code
 for its mathematics. The first program with 1 thread is what all others are compared with: itself in
 both settings, each other program with 4 threads and plain (--every: all of them in all settings).
@@ -19,6 +21,7 @@ import argparse
 import concurrent.futures
 import hashlib
 import itertools
+import json
 import os
 import pathlib
 import shutil
@@ -32,6 +35,7 @@ CASES = {
     "triangles": lambda n: ["--vertices", n],
     "quads": lambda n: ["--quads", "--faces", n],
     "boxes": lambda n: ["--depth", n],
+    "weights": lambda n: ["--vertices", n],
 }
 WITHOUT_FMA = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F"
 
@@ -51,15 +55,29 @@ def made(program, threads, plain, model, case, to, limit):
     environment = {k: v for k, v in os.environ.items() if k != "GLIBC_TUNABLES"}
     if plain:
         environment["GLIBC_TUNABLES"] = WITHOUT_FMA
-    command = [program, "--threads", threads, "-q", "generate", model, "-o", to, *CASES[kind](size)]
-    try:
-        done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False,
+
+    def run(*arguments):
+        command = [program, "--threads", threads, "-q", *arguments]
+        return subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False,
                               env=environment, timeout=limit)
+
+    try:
+        done = run("generate", model, "-o", to, *CASES[kind](size))
+        if done.returncode != 0:
+            return f"exit code {done.returncode}: {done.stderr.strip()}"
+        hashes = hashlib.sha256(to.read_bytes())
+        for name in kinds_of(program) if kind == "weights" else []:
+            weights = to.with_suffix(".npz")
+            done = run("bind", model, to, "-o", weights, "--coordinates", name)
+            hashes.update(weights.read_bytes() if done.returncode == 0 else f"{name}: {done.returncode}".encode())
     except subprocess.TimeoutExpired:
         return None
-    if done.returncode != 0:
-        return f"exit code {done.returncode}: {done.stderr.strip()}"
-    return hashlib.sha256(to.read_bytes()).hexdigest()
+    return hashes.hexdigest()
+
+
+def kinds_of(program):
+    listed = subprocess.run([str(program), "coordinates", "--json", "-", "-q"], capture_output=True, text=True, check=True)
+    return [kind["name"] for kind in json.loads(listed.stdout)["kinds"]]
 
 
 def differing(model, case, all_variants, limit, keep):

@@ -58,7 +58,7 @@ Status write_report(const Options& options, const CoordinateSettings& settings,
        {"model", options.binding.model},
        {"cage", options.binding.cage},
        {"output", options.output},
-       {"coordinates", settings.kind().name},
+       {"coordinates", settings.name()},
        {"options", settings.text()},
        {"points", points.size()},
        {"columns", coordinates.columns()},
@@ -73,7 +73,8 @@ Status write_report(const Options& options, const CoordinateSettings& settings,
 
 int run(const Options& options, const Session& session) {
   if (const Status writable =
-          can_write_output(options.output, {options.binding.model, options.binding.cage});
+          can_write_output(options.output, {options.binding.model, options.binding.cage,
+                                            options.binding.coordinates.mix_weights});
       !writable) {
     return fail(writable.error());
   }
@@ -101,7 +102,7 @@ int run(const Options& options, const Session& session) {
     }
   }
   const auto start = std::chrono::steady_clock::now();
-  const auto coordinates = make_coordinates(meshes->cage, *settings, options.binding, session);
+  const auto coordinates = make_coordinates(*meshes, *settings, options.binding, session);
   if (!coordinates) {
     return fail(coordinates.error());
   }

@@ -5,6 +5,7 @@
 #include "report/compared_cage.h"
 #include "session.h"
 
+#include <cagewright/deform/choose_coordinates.h>
 #include <cagewright/deform/standard_poses.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/cage_metrics.h>
@@ -87,6 +88,10 @@ const std::vector<Row>& rows() {
        [](const ComparedCage& c) { return pose_cell(c, StandardPose::twist, &PoseError::mean); }},
       {"twist: greatest %",
        [](const ComparedCage& c) { return pose_cell(c, StandardPose::twist, &PoseError::max); }},
+      {"bend, twist: in contact",
+       [](const ComparedCage& c) -> std::string {
+         return c.poses ? fmt::format("{}, {}", c.posed[0].in_contact, c.posed[1].in_contact) : "-";
+       }},
       {"pull of unseen vertices %",
        [](const ComparedCage& c) -> std::string {
          return c.poses ? fmt::format("{:.2f}", 100 * c.unseen.mean) : "-";
@@ -95,23 +100,33 @@ const std::vector<Row>& rows() {
   return table;
 }
 
-std::string as_text(const std::vector<ComparedCage>& cages) {
+/// \param is_auto  each cage has coordinates of its own
+std::string as_text(const std::vector<ComparedCage>& cages, bool is_auto) {
+  std::vector<Row> table = rows();
+  if (is_auto) {
+    table.push_back({"coordinates", [](const ComparedCage& c) -> std::string {
+                       return c.coordinates.empty() ? "-" : c.coordinates;
+                     }});
+  }
   std::size_t left = 0;
-  for (const Row& row : rows()) {
+  for (const Row& row : table) {
     left = std::max(left, row.title.size());
   }
-  std::vector<std::string> names;
+  std::vector<std::size_t> widths;
   std::string text(left, ' ');
   for (const ComparedCage& cage : cages) {
-    names.push_back(std::filesystem::path(cage.name).filename().string());
-    text += fmt::format("  {:>9}", names.back());
+    const std::string name = std::filesystem::path(cage.name).filename().string();
+    widths.push_back(std::max<std::size_t>(9, name.size()));
+    for (const Row& row : table) {
+      widths.back() = std::max(widths.back(), row.cell(cage).size());
+    }
+    text += fmt::format("  {:>{}}", name, widths.back());
   }
   text += "\n";
-  for (const Row& row : rows()) {
+  for (const Row& row : table) {
     text += fmt::format("{:<{}}", row.title, left);
     for (std::size_t i = 0; i < cages.size(); ++i) {
-      text +=
-          fmt::format("  {:>{}}", row.cell(cages[i]), std::max<std::size_t>(9, names[i].size()));
+      text += fmt::format("  {:>{}}", row.cell(cages[i]), widths[i]);
     }
     text += "\n";
   }
@@ -125,8 +140,28 @@ std::string as_text(const std::vector<ComparedCage>& cages) {
   return text + "Gaps and errors are in % of the model's diagonal.\n";
 }
 
+/// With --coordinates auto those that carry the model best in this cage; none if it cannot.
+/// Errors: cancelled.
+Result<std::optional<CoordinateSettings>>
+settings_for(const Options& options, const CoordinateSettings& given, const PolygonMesh& cage,
+             const TriangleMesh& model, const Progress& progress) {
+  if (options.no_poses || options.coordinates.kind != best_kind) {
+    return options.no_poses ? std::nullopt : std::optional(given);
+  }
+  Result<ChosenCoordinates> chosen = choose_coordinates(cage, model.positions, progress);
+  if (chosen) {
+    return std::optional(std::move(chosen->settings));
+  }
+  if (chosen.error().code == ErrorCode::cancelled) {
+    return chosen.error();
+  }
+  return std::optional<CoordinateSettings>();
+}
+
 int run(const Options& options, const Session& session) {
-  const Result<CoordinateSettings> settings = settings_of(options.coordinates);
+  const bool is_auto = options.coordinates.kind == best_kind;
+  const Result<CoordinateSettings> settings =
+      is_auto ? CoordinateSettings() : settings_of(options.coordinates);
   if (!settings) {
     return fail(settings.error());
   }
@@ -144,9 +179,15 @@ int run(const Options& options, const Session& session) {
     if (!cage) {
       return fail(cage.error());
     }
-    Result<ComparedCage> compared = compare_cage(
-        options.cages[i], *cage, model, volume, options.no_poses ? nullptr : &*settings,
-        progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+    const Progress share =
+        progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
+    const auto own = settings_for(options, *settings, *cage, model, share.part(0, 0.5));
+    if (!own) {
+      return fail(own.error());
+    }
+    Result<ComparedCage> compared =
+        compare_cage(options.cages[i], *cage, model, volume, *own ? &**own : nullptr,
+                     is_auto ? share.part(0.5, 1) : share);
     if (!compared) {
       return fail(compared.error());
     }
@@ -154,9 +195,10 @@ int run(const Options& options, const Session& session) {
   }
   progress(1, "done");
   if (!options.json.empty()) {
-    nlohmann::json json = {{"format", "cagewright-compare"}, {"version", 1},
-                           {"model", options.model},         {"coordinates", settings->kind().name},
-                           {"notes", notes_as_json()},       {"cages", nlohmann::json::array()}};
+    nlohmann::json json = {
+        {"format", "cagewright-compare"}, {"version", 1},
+        {"model", options.model},         {"coordinates", options.coordinates.kind},
+        {"notes", notes_as_json()},       {"cages", nlohmann::json::array()}};
     for (const ComparedCage& cage : cages) {
       json["cages"].push_back(json_of(cage));
     }
@@ -164,7 +206,7 @@ int run(const Options& options, const Session& session) {
       return fail(written.error());
     }
   }
-  session.say(as_text(cages));
+  session.say(as_text(cages, is_auto && !options.no_poses));
   return done;
 }
 
@@ -179,7 +221,7 @@ void add_compare(CLI::App& app, Session& session) {
   command->add_option("cages", options->cages, "The cages")->required();
   add_pose_option(*command, options->choice);
   add_only_option(*command, options->choice, "The cages are for this object or group of the model");
-  add_coordinate_options(*command, options->coordinates);
+  add_coordinate_options(*command, options->coordinates, true);
   command->add_option("--json", options->json, "Write the same and more to this file as JSON");
   command->add_flag("--no-poses", options->no_poses,
                     "Leave out the bend and the twist, which take longest on large models");

@@ -121,7 +121,8 @@ Result<std::vector<Pose>> plan_outputs(const Options& options, std::vector<std::
 
 /// Whether all outputs can be written, and none over a file that is read.
 Status can_write_all(const Options& options, const std::vector<Pose>& poses) {
-  std::vector<std::string> inputs = {options.binding.model, options.binding.cage, options.weights};
+  std::vector<std::string> inputs = {options.binding.model, options.binding.cage, options.weights,
+                                     options.binding.coordinates.mix_weights};
   for (const Pose& pose : poses) {
     inputs.push_back(pose.path);
   }
@@ -201,7 +202,7 @@ Result<Mover> stored_mover(const Options& options, const ModelAndCage& meshes) {
   if (Status status = belongs_to(*stored, bound, meshes.cage); !status) {
     return about_file(options.weights, status.error());
   }
-  const auto rule = stored->settings.kind().rule(meshes.cage, stored->settings);
+  const auto rule = coordinate_rule(meshes.cage, stored->settings);
   if (!rule) {
     return about_file(options.binding.cage, rule.error());
   }
@@ -224,7 +225,7 @@ Result<Mover> direct_mover(const Options& options, const ModelAndCage& meshes,
   if (!settings) {
     return settings.error();
   }
-  const auto coordinates = make_coordinates(meshes.cage, *settings, options.binding, session);
+  const auto coordinates = make_coordinates(meshes, *settings, options.binding, session);
   if (!coordinates) {
     return coordinates.error();
   }
@@ -481,7 +482,7 @@ void add_deform(CLI::App& app, Session& session) {
   command->add_option("--weights", options->weights, "Use the weights that bind has stored");
   command->add_option("--json", options->json,
                       "Write to this file as JSON what became of the model in each pose: stretch, "
-                      "change of volume, triangles that were flipped");
+                      "change of volume, triangles that were flipped or have come to touch others");
   add_time_options(*command, options->times);
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };

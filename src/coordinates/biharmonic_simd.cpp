@@ -300,15 +300,12 @@ constexpr std::array<const CoordinateOption*, 3> kind_options = {&quads_option, 
 Result<std::shared_ptr<const Coordinates>> prepare_kind(const PolygonMesh& cage,
                                                         const CoordinateSettings& settings,
                                                         const Progress& progress) {
-  const Result<OutsideTreatment> outside = outside_without_continuation(settings);
-  if (!outside) {
-    return outside.error();
+  Result<BiharmonicOptions> options = options_inside<BiharmonicOptions>(settings);
+  if (!options) {
+    return options.error();
   }
-  return biharmonic_coordinates(cage,
-                                {.quads = static_cast<QuadTreatment>(settings.choice(quads_option)),
-                                 .outside = *outside,
-                                 .closeness = settings.number(closeness_option)},
-                                progress);
+  options->closeness = settings.number(closeness_option);
+  return biharmonic_coordinates(cage, *options, progress);
 }
 
 Result<std::shared_ptr<const ColumnRule>> kind_rule(const PolygonMesh& cage,

@@ -327,7 +327,7 @@ private:
 /// Other places: over each triangle, on its edges and corners, and close by
 /// them.
 std::vector<CageSample> samples_to_check(const Surface& cage) {
-  constexpr int steps = 9;
+  constexpr int steps = 12; // the middles of edges and of the triangle are among them
   const auto graded = [](int i) { return static_cast<double>(i * i) + 0.02 * i; };
   std::vector<CageSample> samples;
   for (std::size_t t = 0; t < cage.faces.size(); ++t) {
@@ -758,15 +758,12 @@ constexpr std::array<const CoordinateOption*, 3> kind_options = {&quads_option, 
 Result<std::shared_ptr<const Coordinates>> prepare_kind(const PolygonMesh& cage,
                                                         const CoordinateSettings& settings,
                                                         const Progress& progress) {
-  const Result<OutsideTreatment> outside = outside_without_continuation(settings);
-  if (!outside) {
-    return outside.error();
+  Result<HarmonicOptions> options = options_inside<HarmonicOptions>(settings);
+  if (!options) {
+    return options.error();
   }
-  return harmonic_coordinates(cage,
-                              {.quads = static_cast<QuadTreatment>(settings.choice(quads_option)),
-                               .outside = *outside,
-                               .accuracy = settings.number(accuracy_option)},
-                              progress);
+  options->accuracy = settings.number(accuracy_option);
+  return harmonic_coordinates(cage, *options, progress);
 }
 
 } // namespace
@@ -794,7 +791,9 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
   };
   // The first is compared with the one before it.
   constexpr std::size_t usual_level = 3;
-  std::size_t level = usual_level;
+  constexpr std::size_t quick_level = 1;
+  const std::size_t first_level = options.accuracy > default_accuracy ? quick_level : usual_level;
+  std::size_t level = first_level;
   while (level > 0 && !fits(level)) {
     --level;
   }
@@ -834,7 +833,7 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
     const auto share = [](std::size_t at) {
       return 1 - 0.9 * maths::pow(0.4, static_cast<double>(at));
     };
-    const std::size_t round = level > usual_level ? level - usual_level : 0;
+    const std::size_t round = level > first_level ? level - first_level : 0;
     Result<std::shared_ptr<HarmonicCoordinates>> fine =
         made_at(level, progress.part(share(round), share(round + 1)));
     if (!fine) {

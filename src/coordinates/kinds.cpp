@@ -1,11 +1,13 @@
 #include <cagewright/coordinates/kinds.h>
 
 #include <cagewright/coordinates/biharmonic.h>
+#include <cagewright/coordinates/bounded_biharmonic.h>
 #include <cagewright/coordinates/green.h>
 #include <cagewright/coordinates/harmonic.h>
 #include <cagewright/coordinates/maximum_entropy.h>
 #include <cagewright/coordinates/maximum_likelihood.h>
 #include <cagewright/coordinates/mean_value.h>
+#include <cagewright/coordinates/mixed.h>
 #include <cagewright/coordinates/positive_mean_value.h>
 #include <cagewright/coordinates/quad_green.h>
 #include <cagewright/coordinates/quad_mean_value.h>
@@ -22,10 +24,22 @@ namespace {
 
 // The registry. A kind is a header, a source, a line here and a test.
 constexpr std::array kinds = {
-    &mean_value_kind,      &quad_mean_value_kind,    &harmonic_kind, &positive_mean_value_kind,
-    &maximum_entropy_kind, &maximum_likelihood_kind, &green_kind,    &quad_green_kind,
-    &biharmonic_kind,      &somigliana_kind,
+    &mean_value_kind,
+    &quad_mean_value_kind,
+    &harmonic_kind,
+    &positive_mean_value_kind,
+    &maximum_entropy_kind,
+    &maximum_likelihood_kind,
+    &green_kind,
+    &quad_green_kind,
+    &biharmonic_kind,
+    &somigliana_kind,
+    &bounded_biharmonic_kind,
 };
+
+/// Between two kinds that are mixed, in names and in texts.
+constexpr std::string_view plus = "+";
+constexpr std::string_view spaced_plus = " + ";
 
 constexpr std::array<std::string_view, 2> quad_words = {"center", "diagonal"};
 constexpr std::array<std::string_view, 3> outside_words = {"error", "rest", "continue"};
@@ -115,6 +129,15 @@ CoordinateSettings::CoordinateSettings(const CoordinateKind& kind) : kind_(&kind
 }
 
 Result<CoordinateSettings> CoordinateSettings::of(std::string_view kind) {
+  if (const std::size_t sign = kind.find(plus); sign != std::string_view::npos) {
+    Result<CoordinateSettings> first = of(kind.substr(0, sign));
+    Result<CoordinateSettings> second = of(kind.substr(sign + plus.size()));
+    if (!first || !second) {
+      return first ? second : first;
+    }
+    first->mix_with(*std::move(second));
+    return first;
+  }
   const CoordinateKind* found = find_coordinate_kind(kind);
   if (found == nullptr) {
     return Error{ErrorCode::invalid_option, "no coordinates are called '" + std::string(kind) +
@@ -124,6 +147,17 @@ Result<CoordinateSettings> CoordinateSettings::of(std::string_view kind) {
 }
 
 Result<CoordinateSettings> CoordinateSettings::parse(std::string_view kind, std::string_view text) {
+  if (const std::size_t sign = kind.find(plus); sign != std::string_view::npos) {
+    const std::size_t end = std::min(text.find(spaced_plus), text.size());
+    const std::size_t next = std::min(end + spaced_plus.size(), text.size());
+    Result<CoordinateSettings> first = parse(kind.substr(0, sign), text.substr(0, end));
+    Result<CoordinateSettings> second = parse(kind.substr(sign + plus.size()), text.substr(next));
+    if (!first || !second) {
+      return first ? second : first;
+    }
+    first->mix_with(*std::move(second));
+    return first;
+  }
   Result<CoordinateSettings> settings = of(kind);
   while (settings && !text.empty()) {
     const std::string_view word = text.substr(0, text.find(' '));
@@ -138,6 +172,14 @@ Result<CoordinateSettings> CoordinateSettings::parse(std::string_view kind, std:
   return settings;
 }
 
+void CoordinateSettings::mix_with(CoordinateSettings other) {
+  mixed_ = std::make_shared<const CoordinateSettings>(std::move(other));
+}
+
+std::string CoordinateSettings::name() const {
+  return std::string(kind_->name) + (mixed_ ? std::string(plus) + mixed_->name() : "");
+}
+
 std::optional<std::size_t> CoordinateSettings::find(std::string_view option) const {
   const auto found = std::ranges::find(kind_->options, option, &CoordinateOption::name);
   return found == kind_->options.end()
@@ -146,7 +188,7 @@ std::optional<std::size_t> CoordinateSettings::find(std::string_view option) con
 }
 
 bool CoordinateSettings::has(std::string_view option) const {
-  return find(option).has_value();
+  return find(option).has_value() || (mixed_ && mixed_->has(option));
 }
 
 double CoordinateSettings::number(const CoordinateOption& option) const {
@@ -160,6 +202,16 @@ std::size_t CoordinateSettings::choice(const CoordinateOption& option) const {
 }
 
 Status CoordinateSettings::set(std::string_view option, std::string_view value) {
+  if (mixed_ && mixed_->has(option)) {
+    CoordinateSettings other = *mixed_;
+    if (Status status = other.set(option, value); !status) {
+      return status;
+    }
+    mix_with(std::move(other));
+    if (!find(option)) {
+      return success();
+    }
+  }
   const auto index = find(option);
   if (!index) {
     std::string options;
@@ -191,11 +243,12 @@ std::string CoordinateSettings::text() const {
     text += '=';
     text += value_text(*kind_->options[i], values_[i]);
   }
-  return text;
+  return mixed_ ? text + std::string(spaced_plus) + mixed_->text() : text;
 }
 
 bool CoordinateSettings::same_weights(const CoordinateSettings& other) const {
-  if (kind_ != other.kind_) {
+  if (kind_ != other.kind_ || (mixed_ != nullptr) != (other.mixed_ != nullptr) ||
+      (mixed_ && !mixed_->same_weights(*other.mixed_))) {
     return false;
   }
   for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -209,7 +262,23 @@ bool CoordinateSettings::same_weights(const CoordinateSettings& other) const {
 Result<std::shared_ptr<const Coordinates>> prepare_coordinates(const PolygonMesh& cage,
                                                                const CoordinateSettings& settings,
                                                                const Progress& progress) {
+  if (settings.mixed() != nullptr) {
+    return Error{ErrorCode::invalid_option,
+                 settings.name() +
+                     " coordinates are mixed by a share for each vertex of the model, "
+                     "which is not given here; bind with one kind"};
+  }
   return settings.kind().prepare(cage, settings, progress);
+}
+
+Result<std::shared_ptr<const ColumnRule>> coordinate_rule(const PolygonMesh& cage,
+                                                          const CoordinateSettings& settings) {
+  auto first = settings.kind().rule(cage, settings);
+  if (!first || settings.mixed() == nullptr) {
+    return first;
+  }
+  auto second = coordinate_rule(cage, *settings.mixed());
+  return second ? mixed_rule(*std::move(first), *std::move(second)) : second;
 }
 
 std::string values_of(const CoordinateOption& option) {

@@ -183,41 +183,22 @@ private:
   V inverse_sum_;
 };
 
-void solve_one(const Surface& surface, const std::vector<Index>& used, const Vec3& x,
-               const WeightsOfTile& out, std::size_t i, TileReport& report) {
-  std::vector<double> weights(surface.positions.size(), 0.0);
-  const auto bit = static_cast<std::uint16_t>(1U << i);
-  if (!is_usable(x)) {
-    report.undefined |= bit;
-  } else {
-    const PointTerms point(surface, x);
-    const PointPlace place = place_of(surface, point, at_cage);
-    if (place.on_surface) {
-      report.on_surface |= bit;
-      for (const auto& [vertex, hat] : place.hats) {
-        weights[vertex] += hat;
-      }
-    } else if (place.outside) {
-      report.outside |= bit;
-    } else {
-      std::vector<double> logs;
-      for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-        logs.push_back(logarithm(larger(excess(surface.faces[f], point.face(f)), 1e-290)));
-      }
-      std::vector<double> prior(surface.positions.size());
-      gather_prior<double>(surface, logs.data(), prior.data());
-      Entropy<double> entropy(surface, used, {x.x(), x.y(), x.z()}, prior.data(), weights.data());
-      if (entropy.solve_all()) {
-        report.undefined |= bit;
-        std::ranges::fill(weights, 0.0);
-      }
-    }
+/// \returns whether it has converged
+bool solve_inside(const Surface& surface, const std::vector<Index>& used, const PointTerms& point,
+                  const Vec3& x, std::vector<double>& weights) {
+  std::vector<double> logs;
+  for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+    logs.push_back(logarithm(larger(excess(surface.faces[f], point.face(f)), 1e-290)));
   }
-  put_vertices_of(surface, weights, out.weights, out.stride, i);
+  std::vector<double> prior(surface.positions.size());
+  gather_prior<double>(surface, logs.data(), prior.data());
+  Entropy<double> entropy(surface, used, {x.x(), x.y(), x.z()}, prior.data(), weights.data());
+  return !entropy.solve_all();
 }
 
-TileReport entropy_tile(const Surface& surface, const std::vector<Index>& used,
-                        std::span<const Vec3> points, const WeightsOfTile& out) {
+TileReport entropy_tile(const UsedSurface& cage, std::span<const Vec3> points,
+                        const WeightsOfTile& out) {
+  const auto& [surface, used] = cage;
   const std::size_t vertices = surface.positions.size();
   const SixteenPoints all(points);
   const std::size_t own = LanePoints::scratch_size(surface);
@@ -248,7 +229,12 @@ TileReport entropy_tile(const Surface& surface, const std::vector<Index>& used,
   TileReport report;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (again[i]) {
-      solve_one(surface, used, points[i], out, i, report);
+      std::vector<double> weights_here = weights_with_care(
+          surface, points[i], i, at_cage, report,
+          [&](const PointTerms& point, std::vector<double>& own_weights) {
+            return solve_inside(cage.surface, cage.used, point, points[i], own_weights);
+          });
+      put_vertices_of(surface, weights_here, out.weights, out.stride, i);
     }
   }
   return report;
@@ -266,44 +252,17 @@ HWY_EXPORT(entropy_tile);
 
 namespace {
 
-class MaximumEntropyCoordinates : public SurfaceCoordinates {
-public:
-  MaximumEntropyCoordinates(const PolygonMesh& cage, Surface surface, OutsideTreatment outside)
-      : SurfaceCoordinates(vertex_columns(cage.positions), std::move(surface), outside),
-        used_(this->surface().used_vertices()) {}
-
-private:
-  TileReport solve_framed(std::span<const Vec3> points, double* weights,
-                          std::size_t stride) const override {
-    return HWY_DYNAMIC_DISPATCH(entropy_tile)(surface(), used_, points, {weights, stride});
-  }
-
-  std::vector<Index> used_;
-};
-
 constexpr std::array<const CoordinateOption*, 2> kind_options = {&quads_option, &outside_option};
-
-Result<std::shared_ptr<const Coordinates>>
-prepare_kind(const PolygonMesh& cage, const CoordinateSettings& settings, const Progress&) {
-  const Result<OutsideTreatment> outside = outside_without_continuation(settings);
-  if (!outside) {
-    return outside.error();
-  }
-  return maximum_entropy_coordinates(
-      cage,
-      {.quads = static_cast<QuadTreatment>(settings.choice(quads_option)), .outside = *outside});
-}
 
 } // namespace
 
 Result<std::shared_ptr<const Coordinates>>
 maximum_entropy_coordinates(const PolygonMesh& cage, const MaximumEntropyOptions& options) {
-  Result<Surface> surface = Surface::create(cage, options.quads);
-  if (!surface) {
-    return surface.error();
-  }
-  return std::shared_ptr<const Coordinates>(
-      std::make_shared<MaximumEntropyCoordinates>(cage, *std::move(surface), options.outside));
+  return inside_coordinates(
+      cage, options.quads, options.outside,
+      [](const UsedSurface& used, std::span<const Vec3> points, const WeightsOfTile& out) {
+        return HWY_DYNAMIC_DISPATCH(entropy_tile)(used, points, out);
+      });
 }
 
 constinit const CoordinateKind maximum_entropy_kind = {
@@ -318,7 +277,7 @@ constinit const CoordinateKind maximum_entropy_kind = {
     .made_by = "three unknowns a point",
     .cost = "15 ns a point and triangle",
     .options = kind_options,
-    .prepare = prepare_kind,
+    .prepare = prepare_inside<maximum_entropy_coordinates, MaximumEntropyOptions>,
     .rule = vertex_rule,
 };
 

@@ -190,33 +190,9 @@ bool solve_point(const Surface& surface, const std::vector<Index>& used, const P
   return !open;
 }
 
-void solve_one(const Surface& surface, const std::vector<Index>& used, const Vec3& x,
-               const WeightsOfTile& out, std::size_t i, TileReport& report) {
-  std::vector<double> weights(surface.positions.size(), 0.0);
-  const auto bit = static_cast<std::uint16_t>(1U << i);
-  if (!is_usable(x)) {
-    report.undefined |= bit;
-  } else {
-    const PointTerms point(surface, x);
-    const PointPlace place = place_of(surface, point);
-    if (place.on_surface) {
-      report.on_surface |= bit;
-      for (const auto& [vertex, hat] : place.hats) {
-        weights[vertex] += hat;
-      }
-    } else if (place.outside) {
-      report.outside |= bit;
-    } else if (!solve_point(surface, used, point, true, weights) &&
-               !solve_point(surface, used, point, false, weights)) {
-      report.undefined |= bit;
-      std::ranges::fill(weights, 0.0);
-    }
-  }
-  put_vertices_of(surface, weights, out.weights, out.stride, i);
-}
-
-TileReport likelihood_tile(const Surface& surface, const std::vector<Index>& used,
-                           std::span<const Vec3> points, const WeightsOfTile& out) {
+TileReport likelihood_tile(const UsedSurface& cage, std::span<const Vec3> points,
+                           const WeightsOfTile& out) {
+  const auto& [surface, used] = cage;
   const SixteenPoints all(points);
   const std::size_t own = LaneViews::scratch_size(surface);
   AlignedBuffer<double> scratch(own + Likelihood<Lanes>::scratch_size(surface) * lanes);
@@ -252,7 +228,13 @@ TileReport likelihood_tile(const Surface& surface, const std::vector<Index>& use
   TileReport report;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (again[i]) {
-      solve_one(surface, used, points[i], out, i, report);
+      std::vector<double> weights = weights_with_care(
+          surface, points[i], i, on_cage, report,
+          [&](const PointTerms& point, std::vector<double>& own_weights) {
+            return solve_point(cage.surface, cage.used, point, true, own_weights) ||
+                   solve_point(cage.surface, cage.used, point, false, own_weights);
+          });
+      put_vertices_of(surface, weights, out.weights, out.stride, i);
     }
   }
   return report;
@@ -270,44 +252,17 @@ HWY_EXPORT(likelihood_tile);
 
 namespace {
 
-class MaximumLikelihoodCoordinates : public SurfaceCoordinates {
-public:
-  MaximumLikelihoodCoordinates(const PolygonMesh& cage, Surface surface, OutsideTreatment outside)
-      : SurfaceCoordinates(vertex_columns(cage.positions), std::move(surface), outside),
-        used_(this->surface().used_vertices()) {}
-
-private:
-  TileReport solve_framed(std::span<const Vec3> points, double* weights,
-                          std::size_t stride) const override {
-    return HWY_DYNAMIC_DISPATCH(likelihood_tile)(surface(), used_, points, {weights, stride});
-  }
-
-  std::vector<Index> used_;
-};
-
 constexpr std::array<const CoordinateOption*, 2> kind_options = {&quads_option, &outside_option};
-
-Result<std::shared_ptr<const Coordinates>>
-prepare_kind(const PolygonMesh& cage, const CoordinateSettings& settings, const Progress&) {
-  const Result<OutsideTreatment> outside = outside_without_continuation(settings);
-  if (!outside) {
-    return outside.error();
-  }
-  return maximum_likelihood_coordinates(
-      cage,
-      {.quads = static_cast<QuadTreatment>(settings.choice(quads_option)), .outside = *outside});
-}
 
 } // namespace
 
 Result<std::shared_ptr<const Coordinates>>
 maximum_likelihood_coordinates(const PolygonMesh& cage, const MaximumLikelihoodOptions& options) {
-  Result<Surface> surface = Surface::create(cage, options.quads);
-  if (!surface) {
-    return surface.error();
-  }
-  return std::shared_ptr<const Coordinates>(
-      std::make_shared<MaximumLikelihoodCoordinates>(cage, *std::move(surface), options.outside));
+  return inside_coordinates(
+      cage, options.quads, options.outside,
+      [](const UsedSurface& used, std::span<const Vec3> points, const WeightsOfTile& out) {
+        return HWY_DYNAMIC_DISPATCH(likelihood_tile)(used, points, out);
+      });
 }
 
 constinit const CoordinateKind maximum_likelihood_kind = {
@@ -322,7 +277,7 @@ constinit const CoordinateKind maximum_likelihood_kind = {
     .made_by = "three unknowns a point",
     .cost = "14 ns a point and triangle",
     .options = kind_options,
-    .prepare = prepare_kind,
+    .prepare = prepare_inside<maximum_likelihood_coordinates, MaximumLikelihoodOptions>,
     .rule = vertex_rule,
 };
 

@@ -27,8 +27,33 @@ namespace {
 
 namespace scalar = HWY_NAMESPACE;
 
-/// Corners of a convex polygon, as seen from the point: it is the origin.
-using Polygon = std::vector<Vec3>;
+/// Corners of a convex polygon, as seen from the point: it is the origin. Most have three to six,
+/// and there are millions of them: they are kept without a memory of their own.
+class Polygon {
+public:
+  static constexpr std::size_t most_corners = 16;
+  /// Of one that is cut by three planes: each adds a corner, or two where rounding has bent it.
+  static constexpr std::size_t most_to_cut = most_corners - 6;
+
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] const Vec3& operator[](std::size_t i) const { return corners_[i]; }
+  [[nodiscard]] const Vec3* begin() const { return corners_.data(); }
+  [[nodiscard]] const Vec3* end() const { return corners_.data() + count_; }
+  void push_back(const Vec3& p) { corners_[count_++] = p; }
+  void clear() { count_ = 0; }
+
+  Polygon() = default;
+  Polygon(const Polygon& other) { *this = other; }
+  Polygon& operator=(const Polygon& other) {
+    std::copy(other.begin(), other.end(), corners_.begin());
+    count_ = other.count_;
+    return *this;
+  }
+
+private:
+  std::array<Vec3, most_corners> corners_;
+  std::size_t count_ = 0;
+};
 
 /// A cone of directions round those to a face.
 struct Cap {
@@ -44,17 +69,15 @@ struct Cap {
   }
 };
 
-Cap cap_of(const std::array<Vec3, 3>& corners) {
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : corners) {
-    middle += p.normalized();
-  }
+/// \param directions  to the corners
+Cap cap_of(const std::array<Vec3, 3>& directions) {
+  const Vec3 middle = directions[0] + directions[1] + directions[2];
   if (middle.norm() < 1e-6) { // all round the point
     return {Vec3::UnitX(), -1, 0};
   }
   Cap cap{middle.normalized(), 1, 0};
-  for (const Vec3& p : corners) {
-    cap.cosine = std::min(cap.cosine, cap.axis.dot(p) / p.norm());
+  for (const Vec3& direction : directions) {
+    cap.cosine = std::min(cap.cosine, cap.axis.dot(direction));
   }
   if (cap.cosine <= 0) { // the widest place need no longer be a corner
     cap.cosine = -1;
@@ -63,26 +86,23 @@ Cap cap_of(const std::array<Vec3, 3>& corners) {
   return cap;
 }
 
-/// The parts of a convex polygon on either side of a plane through the origin.
-struct Halves {
-  Polygon inside, outside;
-};
-
-Halves split(const Polygon& polygon, const Vec3& plane) {
-  Halves halves;
+/// Writes the parts of a convex polygon on either side of a plane through the origin.
+void split(const Polygon& polygon, const Vec3& plane, Polygon& inside, Polygon& outside) {
+  inside.clear();
+  outside.clear();
+  std::array<double, Polygon::most_corners> at;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3& a = polygon[i];
-    const Vec3& b = polygon[(i + 1) % polygon.size()];
-    const double at_a = plane.dot(a);
-    const double at_b = plane.dot(b);
-    (at_a >= 0 ? halves.inside : halves.outside).push_back(a);
-    if ((at_a >= 0) != (at_b >= 0)) {
-      const Vec3 between = a + at_a / (at_a - at_b) * (b - a);
-      halves.inside.push_back(between);
-      halves.outside.push_back(between);
+    at[i] = plane.dot(polygon[i]);
+  }
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const std::size_t next = i + 1 < polygon.size() ? i + 1 : 0;
+    (at[i] >= 0 ? inside : outside).push_back(polygon[i]);
+    if ((at[i] >= 0) != (at[next] >= 0)) {
+      const Vec3 between = polygon[i] + at[i] / (at[i] - at[next]) * (polygon[next] - polygon[i]);
+      inside.push_back(between);
+      outside.push_back(between);
     }
   }
-  return halves;
 }
 
 double twice_area(const Polygon& polygon) {
@@ -106,6 +126,9 @@ class Views {
 public:
   Views(const Surface& surface, const scalar::PointTerms& point)
       : surface_(surface), point_(point) {
+    for (std::size_t v = 0; v < surface.positions.size(); ++v) {
+      directions_.emplace_back(point.to_vertex(v) / point.distance(v));
+    }
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
       if (point.face(f).height < 0) {
         add_blocker(f);
@@ -114,10 +137,10 @@ public:
   }
 
   /// Adds the weights of the corners of a face that is seen from inside.
-  void add(std::size_t f, std::vector<double>& weights) const {
+  void add(std::size_t f, std::vector<double>& weights) {
     const Surface::Face& face = surface_.faces[f];
-    const std::vector<const Blocker*> blockers = blockers_of(f);
-    if (blockers.empty()) {
+    find_blockers_of(f);
+    if (found_.empty()) {
       double whole[3];
       scalar::view_weights_of(surface_, point_, f, whole);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -125,16 +148,19 @@ public:
       }
       return;
     }
-    const std::array<Vec3, 3> corners = corners_of(f);
-    std::vector<Polygon> pieces = {Polygon(corners.begin(), corners.end())};
-    for (const Blocker* blocker : blockers) {
-      std::vector<Polygon> left;
-      for (const Polygon& piece : pieces) {
-        cut(piece, *blocker, left);
-      }
-      pieces = std::move(left);
+    pieces_.clear();
+    Polygon& all = pieces_.emplace_back();
+    for (const Vec3& corner : corners_of(f)) {
+      all.push_back(corner);
     }
-    for (const Polygon& piece : pieces) {
+    for (const Blocker* blocker : found_) {
+      left_.clear();
+      for (const Polygon& piece : pieces_) {
+        cut(piece, *blocker, left_);
+      }
+      std::swap(pieces_, left_);
+    }
+    for (const Polygon& piece : pieces_) {
       add_piece(f, piece, weights);
     }
   }
@@ -145,6 +171,11 @@ private:
     return {point_.to_vertex(v[0]), point_.to_vertex(v[1]), point_.to_vertex(v[2])};
   }
 
+  [[nodiscard]] std::array<Vec3, 3> directions_to(std::size_t f) const {
+    const std::array<Index, 3>& v = surface_.faces[f].vertices;
+    return {directions_[v[0]], directions_[v[1]], directions_[v[2]]};
+  }
+
   void add_blocker(std::size_t f) {
     Blocker blocker;
     blocker.corners = corners_of(f);
@@ -153,17 +184,17 @@ private:
     }
     blocker.normal = surface_.faces[f].normal;
     blocker.offset = point_.face(f).height;
-    blocker.cap = cap_of(blocker.corners);
+    blocker.cap = cap_of(directions_to(f));
     blockers_.push_back(blocker);
   }
 
-  [[nodiscard]] std::vector<const Blocker*> blockers_of(std::size_t f) const {
-    std::vector<const Blocker*> found;
+  void find_blockers_of(std::size_t f) {
+    found_.clear();
     if (blockers_.empty()) {
-      return found;
+      return;
     }
     const std::array<Vec3, 3> corners = corners_of(f);
-    const Cap cap = cap_of(corners);
+    const Cap cap = cap_of(directions_to(f));
     std::array<Vec3, 3> planes;
     for (std::size_t e = 0; e < 3; ++e) {
       planes[e] = corners[e].cross(corners[(e + 1) % 3]);
@@ -185,22 +216,35 @@ private:
           std::ranges::any_of(
               planes, [&](const Vec3& plane) { return all_outside(plane, blocker.corners); });
       if (!is_behind && !is_apart) {
-        found.push_back(&blocker);
+        found_.push_back(&blocker);
       }
     }
-    return found;
   }
 
   /// Appends what the blocker leaves of a piece.
   static void cut(const Polygon& piece, const Blocker& blocker, std::vector<Polygon>& left) {
     constexpr double no_area = 1e-28;
+    if (piece.size() > Polygon::most_to_cut) { // by halves
+      for (const std::size_t first : {std::size_t(1), piece.size() / 2}) {
+        Polygon half;
+        half.push_back(piece[0]);
+        const std::size_t last = first == 1 ? piece.size() / 2 : piece.size() - 1;
+        for (std::size_t i = first; i <= last; ++i) {
+          half.push_back(piece[i]);
+        }
+        cut(half, blocker, left);
+      }
+      return;
+    }
+    const std::size_t before = left.size();
     Polygon shadow = piece;
-    std::vector<Polygon> outside;
+    Polygon inside;
+    Polygon outside;
     for (const Vec3& plane : blocker.planes) {
-      Halves halves = split(shadow, plane);
-      shadow = std::move(halves.inside);
-      if (halves.outside.size() >= 3 && twice_area(halves.outside) > no_area) {
-        outside.push_back(std::move(halves.outside));
+      split(shadow, plane, inside, outside);
+      shadow = inside;
+      if (outside.size() >= 3 && twice_area(outside) > no_area) {
+        left.push_back(outside);
       }
     }
     bool hides = shadow.size() >= 3 && twice_area(shadow) > no_area;
@@ -214,10 +258,9 @@ private:
       hides = share > 0 && share < 1;
     }
     if (!hides) {
+      left.resize(before);
       left.push_back(piece);
-      return;
     }
-    std::ranges::move(outside, std::back_inserter(left));
   }
 
   /// The same integral over a polygon that is part of face f: hats are those of the face.
@@ -259,100 +302,63 @@ private:
 
   const Surface& surface_;
   const scalar::PointTerms& point_;
+  std::vector<Vec3> directions_; // to the vertices
   std::vector<Blocker> blockers_;
+  // Room for a face.
+  std::vector<const Blocker*> found_;
+  std::vector<Polygon> pieces_, left_;
 };
 
-class PositiveMeanValueCoordinates : public SurfaceCoordinates {
-public:
-  PositiveMeanValueCoordinates(const PolygonMesh& cage, Surface surface, OutsideTreatment outside)
-      : SurfaceCoordinates(vertex_columns(cage.positions), std::move(surface), outside) {}
-
-private:
-  TileReport solve_framed(std::span<const Vec3> points, double* weights,
-                          std::size_t stride) const override {
-    TileReport report;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      std::vector<double> own = solve_one(points[i], static_cast<std::uint16_t>(1U << i), report);
-      scalar::put_vertices_of(surface(), own, weights, stride, i);
-    }
-    return report;
+/// \returns whether they then reproduce the point: they do but where the cage crosses itself
+bool normalize(const scalar::PointTerms& point, std::vector<double>& weights) {
+  constexpr double rounding = 1e-15; // slivers that cutting has left of what is hidden
+  constexpr double reproduced = 1e-9;
+  const double whole = std::accumulate(weights.begin(), weights.end(), 0.0);
+  double sum = 0;
+  for (double& w : weights) {
+    w = w > rounding * whole ? w : 0;
+    sum += w;
   }
-
-  [[nodiscard]] std::vector<double> solve_one(const Vec3& x, std::uint16_t bit,
-                                              TileReport& report) const {
-    std::vector<double> weights(surface().positions.size(), 0.0);
-    if (!scalar::is_usable(x)) {
-      report.undefined |= bit;
-      return weights;
-    }
-    const scalar::PointTerms point(surface(), x);
-    const scalar::PointPlace place = scalar::place_of(surface(), point);
-    if (place.on_surface) {
-      report.on_surface |= bit;
-      for (const auto& [vertex, hat] : place.hats) {
-        weights[vertex] += hat;
-      }
-      return weights;
-    }
-    if (place.outside) {
-      report.outside |= bit;
-      return weights;
-    }
-    const Views views(surface(), point);
-    for (std::size_t f = 0; f < surface().faces.size(); ++f) {
-      if (point.face(f).height > 0) {
-        views.add(f, weights);
-      }
-    }
-    if (!normalize(x, weights)) {
-      report.undefined |= bit;
-      std::ranges::fill(weights, 0.0);
-    }
-    return weights;
+  Vec3 off = Vec3::Zero();
+  for (std::size_t v = 0; v < weights.size(); ++v) {
+    weights[v] /= sum;
+    off += weights[v] * point.to_vertex(v);
   }
+  return off.norm() < reproduced; // not where there is nothing to be seen: that is no number
+}
 
-  /// \returns whether they then reproduce the point: they do but where the cage crosses itself
-  [[nodiscard]] bool normalize(const Vec3& x, std::vector<double>& weights) const {
-    constexpr double rounding = 1e-15; // slivers that cutting has left of what is hidden
-    constexpr double reproduced = 1e-9;
-    const double whole = std::accumulate(weights.begin(), weights.end(), 0.0);
-    double sum = 0;
-    for (double& w : weights) {
-      w = w > rounding * whole ? w : 0;
-      sum += w;
+bool solve_inside(const Surface& surface, const scalar::PointTerms& point,
+                  std::vector<double>& weights) {
+  Views views(surface, point);
+  for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+    if (point.face(f).height > 0) {
+      views.add(f, weights);
     }
-    Vec3 off = Vec3::Zero();
-    for (std::size_t v = 0; v < weights.size(); ++v) {
-      weights[v] /= sum;
-      off += weights[v] * (surface().positions[v] - x);
-    }
-    return off.norm() < reproduced; // not where there is nothing to be seen: that is no number
   }
-};
+  return normalize(point, weights);
+}
+
+TileReport positive_tile(const UsedSurface& cage, std::span<const Vec3> points,
+                         const WeightsOfTile& out) {
+  TileReport report;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::vector<double> weights =
+        scalar::weights_with_care(cage.surface, points[i], i, scalar::on_cage, report,
+                                  [&](const scalar::PointTerms& point, std::vector<double>& own) {
+                                    return solve_inside(cage.surface, point, own);
+                                  });
+    scalar::put_vertices_of(cage.surface, weights, out.weights, out.stride, i);
+  }
+  return report;
+}
 
 constexpr std::array<const CoordinateOption*, 2> kind_options = {&quads_option, &outside_option};
-
-Result<std::shared_ptr<const Coordinates>>
-prepare_kind(const PolygonMesh& cage, const CoordinateSettings& settings, const Progress&) {
-  const Result<OutsideTreatment> outside = outside_without_continuation(settings);
-  if (!outside) {
-    return outside.error();
-  }
-  return positive_mean_value_coordinates(
-      cage,
-      {.quads = static_cast<QuadTreatment>(settings.choice(quads_option)), .outside = *outside});
-}
 
 } // namespace
 
 Result<std::shared_ptr<const Coordinates>>
 positive_mean_value_coordinates(const PolygonMesh& cage, const PositiveMeanValueOptions& options) {
-  Result<Surface> surface = Surface::create(cage, options.quads);
-  if (!surface) {
-    return surface.error();
-  }
-  return std::shared_ptr<const Coordinates>(
-      std::make_shared<PositiveMeanValueCoordinates>(cage, *std::move(surface), options.outside));
+  return inside_coordinates(cage, options.quads, options.outside, positive_tile);
 }
 
 constinit const CoordinateKind positive_mean_value_kind = {
@@ -367,7 +373,7 @@ constinit const CoordinateKind positive_mean_value_kind = {
     .made_by = "visibility, then closed form",
     .cost = "2000 ns a point and triangle",
     .options = kind_options,
-    .prepare = prepare_kind,
+    .prepare = prepare_inside<positive_mean_value_coordinates, PositiveMeanValueOptions>,
     .rule = vertex_rule,
 };
 

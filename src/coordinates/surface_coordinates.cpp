@@ -6,6 +6,26 @@
 #include <string>
 
 namespace cagewright {
+namespace {
+
+class InsideCoordinates : public SurfaceCoordinates {
+public:
+  InsideCoordinates(const PolygonMesh& cage, Surface surface, OutsideTreatment outside,
+                    InsideTile tile)
+      : SurfaceCoordinates(vertex_columns(cage.positions), std::move(surface), outside),
+        used_(this->surface().used_vertices()), tile_(tile) {}
+
+private:
+  TileReport solve_framed(std::span<const Vec3> points, double* weights,
+                          std::size_t stride) const override {
+    return tile_({surface(), used_}, points, {weights, stride});
+  }
+
+  std::vector<Index> used_;
+  InsideTile tile_;
+};
+
+} // namespace
 
 TileReport FramedCoordinates::solve_tile(std::span<const Vec3> points, std::span<double> weights,
                                          std::size_t stride) const {
@@ -37,6 +57,18 @@ Result<OutsideTreatment> outside_without_continuation(const CoordinateSettings& 
 Result<std::shared_ptr<const ColumnRule>> vertex_rule(const PolygonMesh& cage,
                                                       const CoordinateSettings&) {
   return vertex_columns(cage.positions);
+}
+
+Result<std::shared_ptr<const Coordinates>> inside_coordinates(const PolygonMesh& cage,
+                                                              QuadTreatment quads,
+                                                              OutsideTreatment outside,
+                                                              InsideTile tile) {
+  Result<Surface> surface = Surface::create(cage, quads);
+  if (!surface) {
+    return surface.error();
+  }
+  return std::shared_ptr<const Coordinates>(
+      std::make_shared<InsideCoordinates>(cage, *std::move(surface), outside, tile));
 }
 
 } // namespace cagewright

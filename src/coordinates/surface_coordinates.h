@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace cagewright {
 
@@ -52,6 +53,43 @@ private:
 
 /// What the option says, of kinds that cannot be continued. Errors: invalid_option.
 Result<OutsideTreatment> outside_without_continuation(const CoordinateSettings& settings);
+
+/// The options `quads` and `outside` of such kinds. Errors: invalid_option.
+template <class Options> Result<Options> options_inside(const CoordinateSettings& settings) {
+  const Result<OutsideTreatment> outside = outside_without_continuation(settings);
+  if (!outside) {
+    return outside.error();
+  }
+  Options options;
+  options.quads = static_cast<QuadTreatment>(settings.choice(quads_option));
+  options.outside = *outside;
+  return options;
+}
+
+/// CoordinateKind::prepare of kinds that have no other options.
+template <auto make, class Options>
+Result<std::shared_ptr<const Coordinates>>
+prepare_inside(const PolygonMesh& cage, const CoordinateSettings& settings, const Progress&) {
+  const Result<Options> options = options_inside<Options>(settings);
+  return options ? make(cage, *options) : options.error();
+}
+
+/// A cage, and which of its vertices and middles have faces.
+struct UsedSurface {
+  const Surface& surface;
+  const std::vector<Index>& used;
+};
+
+/// The weights of sixteen points or fewer that are inside; see FramedCoordinates::solve_framed().
+using InsideTile = TileReport (*)(const UsedSurface& cage, std::span<const Vec3> points,
+                                  const WeightsOfTile& out);
+
+/// Coordinates with a column for each vertex, by a function of a tile.
+/// Errors: those of Surface::create().
+Result<std::shared_ptr<const Coordinates>> inside_coordinates(const PolygonMesh& cage,
+                                                              QuadTreatment quads,
+                                                              OutsideTreatment outside,
+                                                              InsideTile tile);
 
 /// CoordinateKind::rule of kinds that have a column for each vertex and no other.
 Result<std::shared_ptr<const ColumnRule>> vertex_rule(const PolygonMesh& cage,

@@ -404,6 +404,35 @@ inline PointPlace place_of(const Surface& surface, const PointTerms& point,
   return place;
 }
 
+/// The weights of vertices and middles for point i of a tile that is computed with care: on the
+/// cage its hats, outside none. \param inside  (const PointTerms& point, std::vector<double>&
+/// weights): fills in the weights, all
+///                0 before, of a point that is inside; returns false where there are none
+template <class Inside>
+std::vector<double> weights_with_care(const Surface& surface, const Vec3& x, std::size_t i,
+                                      double touching, TileReport& report, const Inside& inside) {
+  std::vector<double> weights(surface.positions.size(), 0.0);
+  const auto bit = static_cast<std::uint16_t>(1U << i);
+  if (!is_usable(x)) {
+    report.undefined |= bit;
+    return weights;
+  }
+  const PointTerms point(surface, x);
+  const PointPlace place = place_of(surface, point, touching);
+  if (place.on_surface) {
+    report.on_surface |= bit;
+    for (const auto& [vertex, hat] : place.hats) {
+      weights[vertex] += hat;
+    }
+  } else if (place.outside) {
+    report.outside |= bit;
+  } else if (!inside(point, weights)) {
+    report.undefined |= bit;
+    std::ranges::fill(weights, 0.0);
+  }
+  return weights;
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace cagewright
 HWY_AFTER_NAMESPACE();

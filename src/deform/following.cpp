@@ -90,6 +90,35 @@ std::vector<double> agreement(std::span<const Vec3> positions,
   return agrees;
 }
 
+/// Triangles that touch others when posed and did not at rest. Those that share a corner, or a
+/// place at rest as across a seam, are neighbours.
+std::size_t count_in_contact(TriangleView rest, std::span<const Vec3> posed) {
+  const std::vector<std::pair<Index, Index>> pairs =
+      overlapping_pairs(TriangleBvh(TriangleView{posed, rest.triangles}));
+  const auto share_corner = [&](const Triangle& a, const Triangle& b) {
+    return std::ranges::find_first_of(a, b) != a.end();
+  };
+  const auto touch = [&](std::span<const Vec3> at, const Triangle& a, const Triangle& b) {
+    const Vec3 first[3] = {at[a[0]], at[a[1]], at[a[2]]};
+    const Vec3 second[3] = {at[b[0]], at[b[1]], at[b[2]]};
+    return triangle_triangle_distance(first, second) == 0;
+  };
+  std::vector<std::uint8_t> in_contact(pairs.size(), 0);
+  parallel_for(0, pairs.size(), 256, [&](std::size_t i) {
+    const Triangle& a = rest.triangles[pairs[i].first];
+    const Triangle& b = rest.triangles[pairs[i].second];
+    in_contact[i] =
+        !share_corner(a, b) && touch(posed, a, b) && !touch(rest.positions, a, b) ? 1 : 0;
+  });
+  std::vector<std::uint8_t> is_counted(rest.triangles.size(), 0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (in_contact[i] != 0) {
+      is_counted[pairs[i].first] = is_counted[pairs[i].second] = 1;
+    }
+  }
+  return static_cast<std::size_t>(std::ranges::count(is_counted, 1));
+}
+
 } // namespace
 
 Result<UnseenShare> unseen_share(const PolygonMesh& cage, const Coordinates& coordinates,
@@ -177,6 +206,7 @@ DeformedFigures deformed_figures(TriangleView rest, std::span<const Vec3> posed)
   for (std::size_t i = 0; i < was.size(); ++i) {
     figures.flipped += was[i] > 0 && is[i] < 0 ? 1U : 0U;
   }
+  figures.in_contact = count_in_contact(rest, posed);
   return figures;
 }
 

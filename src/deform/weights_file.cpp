@@ -87,7 +87,7 @@ Status add_identity(NpzWriter& file, const WeightsIdentity& identity) {
   if (Status s = file.add("version", {"<i8", {}}, std::span(&version, 1)); !s) {
     return s;
   }
-  for (const auto& [name, text] : {std::pair(kind_name, std::string(identity.settings.kind().name)),
+  for (const auto& [name, text] : {std::pair(kind_name, identity.settings.name()),
                                    {options_name, identity.settings.text()},
                                    {columns_name, text_of(identity.rule.groups())}}) {
     if (Status s = add_text(file, name, text); !s) {
@@ -331,7 +331,7 @@ std::string text_of(const std::vector<ColumnGroup>& groups) {
 
 Result<CoordinateSettings> settings_of_file(std::string_view kind, std::string_view options,
                                             const std::string& name) {
-  if (find_coordinate_kind(kind) == nullptr) {
+  if (!CoordinateSettings::of(kind)) {
     return Error{ErrorCode::unsupported, name + ": weights of unknown kind '" +
                                              one_line(std::string(kind), 40) +
                                              "'; this program has " + names_of_coordinate_kinds()};
@@ -347,7 +347,7 @@ Result<CoordinateSettings> settings_of_file(std::string_view kind, std::string_v
 
 Result<std::size_t> columns_of_file(const StoredWeights& stored, std::string_view columns,
                                     const std::string& name) {
-  const auto rule = stored.settings.kind().rule(stored.cage, stored.settings);
+  const auto rule = coordinate_rule(stored.cage, stored.settings);
   if (!rule) {
     return Error{ErrorCode::malformed, name + ": the cage in it is none: " + rule.error().message +
                                            "; bind the model again"};
@@ -533,7 +533,7 @@ Status belongs_to(const StoredWeights& stored, std::span<const Vec3> points,
                     ": bind it again");
   }
   if (!stored.has_identity) {
-    const auto rule = stored.settings.kind().rule(cage, stored.settings);
+    const auto rule = coordinate_rule(cage, stored.settings);
     return rule ? gives(stored.weights, points, **rule) : Status(rule.error());
   }
   if (stored.model_checksum != checksum(points)) {

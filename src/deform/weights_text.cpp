@@ -59,8 +59,7 @@ public:
   Status begin(const WeightsIdentity& identity) {
     const PolygonMesh& cage = identity.cage;
     std::string text(csv_mark);
-    text += ", version " + std::to_string(version) + ", " +
-            std::string(identity.settings.kind().name) + '\n';
+    text += ", version " + std::to_string(version) + ", " + identity.settings.name() + '\n';
     text += std::string(csv_options) + identity.settings.text() + '\n';
     text += std::string(csv_columns) + text_of(identity.rule.groups()) + '\n';
     text += "# model " + std::to_string(identity.points.size()) + ' ' +
@@ -114,13 +113,13 @@ public:
 
   Status begin(const WeightsIdentity& identity) {
     const PolygonMesh& cage = identity.cage;
-    std::string text =
-        "{\"format\": \"" + std::string(json_mark) + "\", \"version\": " + std::to_string(version) +
-        ", \"kind\": \"" + std::string(identity.settings.kind().name) + "\", \"options\": \"" +
-        identity.settings.text() + "\", \"columns\": \"" + text_of(identity.rule.groups()) +
-        "\",\n \"model_vertices\": " + std::to_string(identity.points.size()) +
-        ", \"model_checksum\": \"" + std::to_string(checksum(identity.points)) +
-        "\",\n \"cage_positions\": [";
+    std::string text = "{\"format\": \"" + std::string(json_mark) +
+                       "\", \"version\": " + std::to_string(version) + ", \"kind\": \"" +
+                       identity.settings.name() + "\", \"options\": \"" + identity.settings.text() +
+                       "\", \"columns\": \"" + text_of(identity.rule.groups()) +
+                       "\",\n \"model_vertices\": " + std::to_string(identity.points.size()) +
+                       ", \"model_checksum\": \"" + std::to_string(checksum(identity.points)) +
+                       "\",\n \"cage_positions\": [";
     for (std::size_t v = 0; v < cage.positions.size(); ++v) {
       text += v == 0 ? "[" : ", [";
       append_place(text, cage.positions[v], ", ");
@@ -518,8 +517,8 @@ Result<std::unique_ptr<RowSink>> text_sink(WeightsFormat format, const WeightsId
     return Error{ErrorCode::unsupported,
                  one_line(path.string()) +
                      ": groups of vertices have one weight for each vertex of the cage, but " +
-                     std::string(identity.settings.kind().name) + " coordinates have " +
-                     text_of(groups) + "; write .npz, or bind with coordinates of vertices alone"};
+                     identity.settings.name() + " coordinates have " + text_of(groups) +
+                     "; write .npz, or bind with coordinates of vertices alone"};
   }
   const bool by_columns = format == WeightsFormat::dmat || format == WeightsFormat::vertex_groups;
   const double bytes =

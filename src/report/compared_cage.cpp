@@ -31,6 +31,7 @@ Status try_poses(const PolygonMesh& cage, TriangleView model, CoordinateSettings
   for (std::size_t k = 0; k < standard_poses.size(); ++k) {
     compared.posed[k] = deformed_figures(model, errors->followed[k]);
   }
+  compared.coordinates = settings.name();
   compared.unseen = *unseen;
   compared.poses = *std::move(errors);
   return success();
@@ -79,6 +80,7 @@ nlohmann::json json_of(const ComparedCage& cage) {
   json["poses"] = nullptr;
   if (cage.poses) {
     json["poses"] = {{"undefined", cage.poses->undefined}, {"outside", cage.poses->outside}};
+    json["poses"]["coordinates"] = cage.coordinates;
     json["poses"]["unseen_share"] = json_of(cage.unseen);
     for (const StandardPose pose : standard_poses) {
       const PoseError& error = cage.poses->of[static_cast<std::size_t>(pose)];

@@ -29,6 +29,7 @@ struct ComparedCage {
   std::size_t faces = 0; ///< as the file has them
   std::size_t quads = 0;
   CageMetrics metrics;
+  std::string coordinates;         ///< by which it was tried; empty without `poses`
   std::optional<PoseErrors> poses; ///< none: not asked for, or the cage cannot carry a model
   std::array<DeformedFigures, standard_poses.size()> posed; ///< with `poses`
   UnseenShare unseen;                                       ///< with `poses`

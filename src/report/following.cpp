@@ -17,11 +17,10 @@ nlohmann::json json_of(const UnseenShare& share) {
 }
 
 nlohmann::json json_of(const DeformedFigures& figures) {
-  return {{"mean_stretch", finite(figures.mean_stretch)},
-          {"p95_stretch", finite(figures.high_stretch)},
-          {"max_stretch", finite(figures.max_stretch)},
-          {"volume_change", figures.volume_change},
-          {"flipped_triangles", figures.flipped}};
+  return {
+      {"mean_stretch", finite(figures.mean_stretch)}, {"p95_stretch", finite(figures.high_stretch)},
+      {"max_stretch", finite(figures.max_stretch)},   {"volume_change", figures.volume_change},
+      {"flipped_triangles", figures.flipped},         {"triangles_in_contact", figures.in_contact}};
 }
 
 } // namespace cagewright

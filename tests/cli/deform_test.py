@@ -670,6 +670,61 @@ class Bind(InAFolder):
             self.assert_near(there, expected, 1e-5)
             self.assert_near(rows(self.out, "v"), expected, 1e-5)
 
+    def test_two_kinds_are_mixed_by_a_weight_for_each_vertex(self):
+        pose = self.file("bent.obj", cage(lambda x, y, z: (x * (1 + z), y + z * x, z)))
+        count = len(rows(self.model, "v"))
+        shares = [i / (count - 1) for i in range(count)]
+        paint = self.file("paint.txt", "".join(f"{share}\n" for share in shares))
+        positions = {}
+        for name in ("mean_value", "green"):
+            run("deform", self.model, self.rest, pose, "-o", self.out, "--coordinates", name)
+            positions[name] = rows(self.out, "v")
+        expected = [[(1 - s) * x + s * y for x, y in zip(a, b)]
+                    for s, a, b in zip(shares, positions["mean_value"], positions["green"])]
+        mix = ["--mix", "green", "--mix-weights", paint]
+        for name in ("mix.npz", "mix.csv", "mix.json"):
+            weights = self.folder / name
+            told = self.folder / "told.json"
+            bound = run("bind", self.model, self.rest, "-o", weights, *mix, "--json", told)
+            self.assertEqual(bound.returncode, DONE, bound.stderr)
+            self.assertEqual(json.loads(told.read_text())["coordinates"], "mean_value+green")
+            done = run("deform", self.model, self.rest, pose, "-o", self.out, "--weights", weights)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assert_near(rows(self.out, "v"), expected, 1e-5)
+            self.out.unlink()
+            self.assert_refused(run("deform", self.model, self.rest, pose, "-o", self.out, "--weights", weights,
+                                    "--mix", "harmonic"), BAD_INPUT, "are mean_value+green coordinates")
+        done = run("deform", self.model, self.rest, pose, "-o", self.out, *mix)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assert_near(rows(self.out, "v"), expected, 1e-5)
+
+    def test_mixing_by_colors_and_by_groups(self):
+        red = "".join(line + (" 1 0 0" if line.startswith("v ") else "") + "\n"
+                      for line in MODEL.splitlines())
+        model = self.file("red.obj", "o all\n" + red)
+        run("deform", model, self.rest, self.pose, "-o", self.out, "--coordinates", "green")
+        expected = rows(self.out, "v")
+        for source in ("colors", "group:all"):
+            done = run("deform", model, self.rest, self.pose, "-o", self.out, "--mix", "green", "--mix-weights", source)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assert_near(rows(self.out, "v"), expected, 1e-12)
+
+    def test_mixing_that_makes_no_sense_is_refused(self):
+        self.file("many.txt", "0\n" * 3)
+        self.file("large.txt", "2\n" * 16)
+        for options, words in ((["--mix", "green"], "--mix-weights"),
+                               (["--mix-weights", "many.txt"], "--mix"),
+                               (["--mix", "mean_value", "--mix-weights", "colors"], "give another"),
+                               (["--mix", "green", "--mix-weights", "colors"], "no vertex colors"),
+                               (["--mix", "green", "--mix-weights", "group:arm"], "arm"),
+                               (["--mix", "green", "--mix-weights", self.folder / "many.txt"], "16"),
+                               (["--mix", "green", "--mix-weights", self.folder / "large.txt"], "from 0 to 1"),
+                               (["--coordinates", "auto", "--mix", "green", "--mix-weights", "colors"], "auto"),
+                               (["--coordinates", "somigliana", "--local", "1", "--mix", "green", "--mix-weights",
+                                 self.file("half.txt", "0.5\n" * 16)], "cannot be mixed")):
+            self.assert_refused(run("bind", self.model, self.rest, "-o", self.folder / "no.npz", *options), BAD_INPUT,
+                                words)
+
     def test_weights_of_one_kind_are_not_applied_as_another(self):
         weights = self.folder / "green.npz"
         run("bind", self.model, self.rest, "-o", weights, "--coordinates", "green")

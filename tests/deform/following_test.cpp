@@ -136,5 +136,28 @@ TEST(DeformedFigures, CountTrianglesThatFoldOver) {
   EXPECT_TRUE(std::isinf(deformed_figures(plane, posed).max_stretch));
 }
 
+TEST(DeformedFigures, CountTrianglesThatHaveComeToTouchOthers) {
+  const TriangleMesh apart = joined(make_icosphere(1), [] {
+    TriangleMesh other = make_icosphere(1);
+    for (Vec3& p : other.positions) {
+      p.x() += 3;
+    }
+    return other;
+  }());
+  std::vector<Vec3> posed = apart.positions;
+  EXPECT_EQ(deformed_figures(apart, posed).in_contact, 0U);
+  for (std::size_t i = posed.size() / 2; i < posed.size(); ++i) {
+    posed[i].x() -= 1.5; // into the other
+  }
+  const std::size_t in_contact = deformed_figures(apart, posed).in_contact;
+  EXPECT_GT(in_contact, 10U);
+  EXPECT_LT(in_contact, 80U);
+  // What touches at rest is no news.
+  TriangleMesh together = apart;
+  together.positions = posed;
+  EXPECT_EQ(deformed_figures(together, apart.positions).in_contact, 0U);
+  EXPECT_EQ(deformed_figures(together, posed).in_contact, 0U);
+}
+
 } // namespace
 } // namespace cagewright

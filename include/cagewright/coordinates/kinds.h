@@ -67,23 +67,34 @@ public:
   CoordinateSettings();
   explicit CoordinateSettings(const CoordinateKind& kind);
 
-  /// By names, as people write them. Errors: invalid_option (no such kind; see set()).
+  /// By names, as people write them and name() does. Errors: invalid_option (no such kind; see
+  /// set()).
   static Result<CoordinateSettings> of(std::string_view kind);
   /// Those that text() has written. Errors: invalid_option.
   static Result<CoordinateSettings> parse(std::string_view kind, std::string_view text);
 
   [[nodiscard]] const CoordinateKind& kind() const { return *kind_; }
+  /// Whether the kind has an option of this name, or what it is mixed with does.
   [[nodiscard]] bool has(std::string_view option) const;
+
+  /// The kind with which this one is mixed by a share for each point; null: none. See mixed.h.
+  [[nodiscard]] const CoordinateSettings* mixed() const { return mixed_.get(); }
+  void mix_with(CoordinateSettings other);
+
+  /// "harmonic", or "harmonic+green" of two that are mixed.
+  [[nodiscard]] std::string name() const;
 
   /// The value of an option that the kind has.
   [[nodiscard]] double number(const CoordinateOption& option) const;
   [[nodiscard]] std::size_t choice(const CoordinateOption& option) const;
 
+  /// Of two kinds that are mixed, both take it, as far as they have it.
   /// Errors: invalid_option: the kind has no such option, or the value is not allowed; both with
   /// what is.
   Status set(std::string_view option, std::string_view value);
 
-  /// "quads=center outside=error": all options, so that later defaults do not matter.
+  /// "quads=center outside=error": all options, so that later defaults do not matter; those of a
+  /// second kind follow after " + ".
   [[nodiscard]] std::string text() const;
 
   /// Whether weights made with the one are good for the other: all but options for posing agree.
@@ -97,13 +108,19 @@ private:
 
   const CoordinateKind* kind_;
   std::vector<double> values_; // in the order of the kind's options
+  std::shared_ptr<const CoordinateSettings> mixed_;
 };
 
 /// The cage prepared for the kind that the settings name.
-/// Errors: invalid_cage, cancelled.
+/// Errors: invalid_cage, cancelled, invalid_option (two kinds that are mixed: see prepare_mixed()).
 Result<std::shared_ptr<const Coordinates>>
 prepare_coordinates(const PolygonMesh& cage, const CoordinateSettings& settings = {},
                     const Progress& progress = {});
+
+/// How weights that were computed before with these settings are applied: quick.
+/// Errors: invalid_cage, invalid_option (kinds that cannot be mixed).
+Result<std::shared_ptr<const ColumnRule>> coordinate_rule(const PolygonMesh& cage,
+                                                          const CoordinateSettings& settings);
 
 /// What a value of an option may be: "center|diagonal", "0 to 0.499".
 std::string values_of(const CoordinateOption& option);

@@ -36,16 +36,18 @@ Result<UnseenShare> unseen_share(const PolygonMesh& cage, const Coordinates& coo
 /// What became of a surface. Stretch of a triangle: how many times as long a line on it can have
 /// become, or as short; 1 where lengths are kept.
 struct DeformedFigures {
-  double mean_stretch = 1;  ///< by area at rest
-  double high_stretch = 1;  ///< of 95 % of the area none is greater
-  double max_stretch = 1;   ///< infinite where a triangle has lost its area
-  double volume_change = 0; ///< new / old - 1; 0 for surfaces without volume
-  std::size_t flipped = 0;  ///< triangles that look against those round them, and did not before
+  double mean_stretch = 1;    ///< by area at rest
+  double high_stretch = 1;    ///< of 95 % of the area none is greater
+  double max_stretch = 1;     ///< infinite where a triangle has lost its area
+  double volume_change = 0;   ///< new / old - 1; 0 for surfaces without volume
+  std::size_t flipped = 0;    ///< triangles that look against those round them, and did not before
+  std::size_t in_contact = 0; ///< triangles that cross or touch others, which they did not at rest
 };
 
 /// \param rest    T triangles; those without area do not count
 /// \param posed   a position for each vertex
-/// Cost: O(T log T).
+/// Cost: O(T log T), and what it takes to compare triangles whose boxes overlap. The same on any
+/// number of threads.
 DeformedFigures deformed_figures(TriangleView rest, std::span<const Vec3> posed);
 
 } // namespace cagewright
