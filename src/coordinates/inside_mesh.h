@@ -27,7 +27,8 @@ struct InsideMesh {
   std::vector<std::array<Index, 4>> cells; ///< in no particular orientation
 };
 
-/// How far points are from one another, in the frame, so that there are about so many in all.
+/// How far points are from one another, in the frame, so that there are about so many in all, and
+/// not many more than a third of them inside.
 double spacing_for(const Surface& surface, std::size_t points);
 
 /// A conforming Delaunay mesh: points on edges and faces of the cage and on a lattice inside, and

@@ -1,6 +1,7 @@
 #include <cagewright/coordinates/mixed.h>
 
 #include <cagewright/coordinates/aligned_buffer.h>
+#include <cagewright/mesh/measures.h>
 
 #include <algorithm>
 #include <array>
@@ -17,11 +18,14 @@ bool has_vertices_alone(const ColumnRule& rule) {
   return rule.columns() == rule.cage_at_rest().size();
 }
 
-/// Rules may divide only at some settings, and none does at rest: asked of a cage that is not.
+/// Rules may divide only at some settings, and none does where the cage is at rest or in an affine
+/// image of it: asked of a cage that is twisted.
 bool divides(const ColumnRule& rule) {
   std::vector<Vec3> cage(rule.cage_at_rest().begin(), rule.cage_at_rest().end());
+  const double unit = diagonal(cage);
   for (Vec3& p : cage) {
-    p.x() *= 1.5;
+    const Vec3 q = p / unit;
+    p += unit * Vec3(q.y() * q.z(), -q.x() * q.z(), q.x() * q.y());
   }
   return rule.divisor(cage).has_value();
 }

@@ -5,6 +5,7 @@ Called as: deform_test.py PROGRAM [unittest arguments]
 
 import json
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -30,6 +31,7 @@ o boxes
     "".join("f " + " ".join(f"{v}/1/{n}" for v in quad) + "\n" for n, quad in enumerate(QUADS, 1)) + \
     "g small\nusemtl blue\n" + \
     "".join("f " + " ".join(f"{v + 8}/2/{n}" for v in quad) + "\n" for n, quad in enumerate(QUADS, 1))
+PLAIN = re.sub(r"(?m)^(v( \S+){3}) 1 0 0$", r"\1", MODEL)  # without colors
 
 
 def cage(move=lambda x, y, z: (x, y, z), faces=QUADS):
@@ -700,16 +702,17 @@ class Bind(InAFolder):
 
     def test_mixing_by_colors_and_by_groups(self):
         red = "".join(line + (" 1 0 0" if line.startswith("v ") else "") + "\n"
-                      for line in MODEL.splitlines())
-        model = self.file("red.obj", "o all\n" + red)
+                      for line in PLAIN.splitlines())
+        model = self.file("red.obj", red)
         run("deform", model, self.rest, self.pose, "-o", self.out, "--coordinates", "green")
         expected = rows(self.out, "v")
-        for source in ("colors", "group:all"):
+        for source in ("colors", "group:boxes"):
             done = run("deform", model, self.rest, self.pose, "-o", self.out, "--mix", "green", "--mix-weights", source)
             self.assertEqual(done.returncode, DONE, done.stderr)
             self.assert_near(rows(self.out, "v"), expected, 1e-12)
 
     def test_mixing_that_makes_no_sense_is_refused(self):
+        model = self.file("plain.obj", PLAIN)
         self.file("many.txt", "0\n" * 3)
         self.file("large.txt", "2\n" * 16)
         for options, words in ((["--mix", "green"], "--mix-weights"),
@@ -722,8 +725,7 @@ class Bind(InAFolder):
                                (["--coordinates", "auto", "--mix", "green", "--mix-weights", "colors"], "auto"),
                                (["--coordinates", "somigliana", "--local", "1", "--mix", "green", "--mix-weights",
                                  self.file("half.txt", "0.5\n" * 16)], "cannot be mixed")):
-            self.assert_refused(run("bind", self.model, self.rest, "-o", self.folder / "no.npz", *options), BAD_INPUT,
-                                words)
+            self.assert_refused(run("bind", model, self.rest, "-o", self.folder / "no.npz", *options), BAD_INPUT, words)
 
     def test_weights_of_one_kind_are_not_applied_as_another(self):
         weights = self.folder / "green.npz"
