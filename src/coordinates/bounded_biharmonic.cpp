@@ -527,7 +527,7 @@ private:
 
 constexpr std::size_t usual_points = 7000;
 constexpr std::size_t first_points = 1000; ///< where an accuracy says when they suffice
-constexpr std::size_t most_points = 60000;
+constexpr std::size_t most_points = 20000;
 /// Of the points of one mesh and those of the next coarser.
 constexpr double coarser = 2.5;
 

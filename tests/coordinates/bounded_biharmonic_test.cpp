@@ -24,8 +24,8 @@ TEST(BoundedBiharmonic, HasTheGoldenValues) {
 }
 
 TEST(BoundedBiharmonic, HardlyChangesWithTwiceAsManyPoints) {
-  const Made coarse = bounded_biharmonic_coordinates(make_star(), {.points = 1500});
-  const Made fine = bounded_biharmonic_coordinates(make_star(), {.points = 3000});
+  const Made coarse = bounded_biharmonic_coordinates(make_star(), {.points = 2000});
+  const Made fine = bounded_biharmonic_coordinates(make_star(), {.points = 4000});
   ASSERT_TRUE(coarse && fine);
   double sum = 0;
   const std::vector<Vec3> points = points_inside(make_star(), 60, 71);

@@ -245,11 +245,21 @@ std::string name_of_case(const testing::TestParamInfo<Laws::ParamType>& tested) 
   return std::string(std::get<0>(tested.param)->name) + "In" + std::get<1>(tested.param).name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Laws,
-                         testing::Combine(testing::ValuesIn(coordinate_kinds().begin(),
-                                                            coordinate_kinds().end()),
-                                          testing::ValuesIn(law_cages())),
-                         name_of_case);
+/// Kinds that can be told how exact to be take long for the torus, and have it in tests of their
+/// own.
+std::vector<std::tuple<const CoordinateKind*, LawCage>> kinds_in_cages() {
+  std::vector<std::tuple<const CoordinateKind*, LawCage>> all;
+  for (const CoordinateKind* kind : coordinate_kinds()) {
+    for (const LawCage& cage : law_cages()) {
+      if (cage.name != "Torus" || !CoordinateSettings(*kind).has(accuracy_option.name)) {
+        all.emplace_back(kind, cage);
+      }
+    }
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Laws, testing::ValuesIn(kinds_in_cages()), name_of_case);
 
 /// Those of files that are there.
 std::vector<LawCage> cages_of_characters() {
@@ -296,8 +306,9 @@ protected:
 TEST_P(EveryKind, DoesNotDependOnHowTheCageIsWritten) {
   const Made made = make(make_star());
   ASSERT_TRUE(made) << made.error().message;
-  if ((*made)->rule()->groups().front().name != "vertices") {
-    return; // matrices turn with the cage
+  if ((*made)->rule()->groups().front().name != "vertices" ||
+      (*made)->rule()->reproduced_from().empty()) {
+    return; // matrices turn with the cage; and columns are compared by what they reproduce
   }
   // Kinds that are fitted or solved for depend on where the cage is looked at, by less than they
   // say of their errors.

@@ -17,7 +17,7 @@ struct BoundedBiharmonicOptions {
   QuadTreatment quads = QuadTreatment::center;
   OutsideTreatment outside = OutsideTreatment::error; ///< or `rest`
   double accuracy =
-      0; ///< of weights (error_estimate()), as far as 60,000 points go; 0: as it comes
+      0; ///< of weights (error_estimate()), as far as 20,000 points go; 0: as it comes
   std::size_t points = 0; ///< of the tetrahedra, about; 0: 7000
 };
 
