@@ -3,6 +3,7 @@
 #include "handles.h"
 
 #include "io/source.h"
+#include "mesh/mesh_part.h"
 #include "report/cage_figures.h"
 #include "report/cage_report.h"
 #include "report/compared_cage.h"
@@ -13,6 +14,7 @@
 #include <cagewright/cage/generate.h>
 #include <cagewright/cage/generate_for_polygons.h>
 #include <cagewright/cage/option_table.h>
+#include <cagewright/cage/specks.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/mesh/weld.h>
 #include <cagewright/validate/cage_metrics.h>
@@ -33,6 +35,7 @@ using namespace cagewright::c;
 struct cw_options {
   GenerateOptions options;
   std::vector<double> density;
+  std::vector<LimbJoint> joints;
   std::optional<PolygonMesh> start;
 };
 
@@ -93,6 +96,9 @@ Status make_cage(const cw_mesh_view* model, const cw_options* asked, const Progr
     }
     options.density = asked->density;
   }
+  if (asked != nullptr) {
+    options.joints = asked->joints;
+  }
   if (asked != nullptr && asked->start) {
     options.start = &*asked->start;
   }
@@ -106,19 +112,23 @@ Status make_cage(const cw_mesh_view* model, const cw_options* asked, const Progr
   return success();
 }
 
-Status judge(const MeshArgument& model, const PolygonMesh& cage, const ValidateOptions& options,
+/// What a cage is judged for, in the model's own numbers.
+struct Judged {
+  TriangleView triangles;
+  TriangleView cuttings;            ///< of its faces, whichever way they are cut
+  std::span<const Index> face_of;   ///< of each of these its face in the model; none: the same
+  std::span<const Index> vertex_of; ///< of each vertex its number in the model; none: the same
+};
+
+Status judge(const Judged& model, const PolygonMesh& cage, const ValidateOptions& options,
              const Progress& progress, cw_verdict** out) {
-  const TriangleView triangles = model.triangles();
-  const Triangulation cuttings =
-      model.if_polygons() != nullptr ? every_cutting(*model.if_polygons()) : Triangulation();
-  const TriangleView all = model.if_polygons() != nullptr
-                               ? TriangleView{triangles.positions, cuttings.triangles}
-                               : triangles;
-  Result<ValidityReport> report = validate_cage(cage, all, options, progress);
+  const TriangleView triangles = model.triangles;
+  Result<ValidityReport> report = validate_cage(cage, model.cuttings, options, progress);
   if (!report) {
     return report.error();
   }
-  name_model_faces(*report, cuttings.face_of);
+  name_model_faces(*report, model.face_of);
+  name_model_vertices(*report, model.vertex_of);
   nlohmann::json json = json_of(*report, names());
   json["cage"] =
       figures_as_json(measure_cage(report->merged_vertices > 0 ? weld(cage) : cage, triangles));
@@ -130,11 +140,60 @@ Status judge(const MeshArgument& model, const PolygonMesh& cage, const ValidateO
   return success();
 }
 
+Status judge_whole(const MeshArgument& model, const PolygonMesh& cage,
+                   const ValidateOptions& options, const Progress& progress, cw_verdict** out) {
+  const TriangleView triangles = model.triangles();
+  if (model.if_polygons() == nullptr) {
+    return judge({triangles, triangles, {}, {}}, cage, options, progress, out);
+  }
+  const Triangulation cuttings = every_cutting(*model.if_polygons());
+  return judge({triangles, {triangles.positions, cuttings.triangles}, cuttings.face_of, {}}, cage,
+               options, progress, out);
+}
+
+Status judge_without_specks(const MeshArgument& model, const PolygonMesh& cage,
+                            const ValidateOptions& options, const Progress& progress,
+                            cw_verdict** out) {
+  const PolygonMesh whole = model.polygons();
+  const Result<std::vector<bool>> is_kept = faces_in_no_speck(whole, progress.quiet());
+  if (!is_kept) {
+    return is_kept.error();
+  }
+  const MeshPart rest = part_of(whole, *is_kept);
+  std::vector<Index> faces;
+  for (Index f = 0; f < is_kept->size(); ++f) {
+    if ((*is_kept)[f]) {
+      faces.push_back(f);
+    }
+  }
+  const Triangulation triangles = triangulate(rest.mesh);
+  Triangulation cuttings = every_cutting(rest.mesh);
+  for (Index& f : cuttings.face_of) {
+    f = faces[f];
+  }
+  const std::vector<Vec3>& positions = rest.mesh.positions;
+  return judge({{positions, triangles.triangles},
+                {positions, cuttings.triangles},
+                cuttings.face_of,
+                rest.vertices},
+               cage, options, progress, out);
+}
+
 Status compare(const MeshArgument& model, const cw_mesh_view* cages, const char* const* cage_names,
                std::size_t count, bool with_poses, const Progress& progress, char** out) {
   const ModelVolume volume = model_volume(model.triangles());
   const CoordinateSettings coordinates;
   nlohmann::json list = nlohmann::json::array();
+  std::optional<BendableLimbs> limbs;
+  if (with_poses) {
+    Result<BendableLimbs> found = BendableLimbs::of(model.triangles(), {}, progress.quiet());
+    if (found) { // else the model has no extent, and no limbs
+      limbs = std::move(*found);
+    } else if (found.error().code == ErrorCode::cancelled) {
+      return found.error();
+    }
+  }
+  const BendableLimbs* const bent = limbs && limbs->count() > 0 ? &*limbs : nullptr;
   for (std::size_t i = 0; i < count; ++i) {
     if (cage_names != nullptr && cage_names[i] == nullptr) {
       return all_given({{nullptr, "the name of a cage"}});
@@ -149,11 +208,11 @@ Status compare(const MeshArgument& model, const cw_mesh_view* cages, const char*
                                          static_cast<double>(i + 1) / static_cast<double>(count));
     const Result<ComparedCage> compared =
         compare_cage(name, cage->polygons(), model.triangles(), volume,
-                     with_poses ? &coordinates : nullptr, share);
+                     with_poses ? &coordinates : nullptr, bent, share);
     if (!compared) {
       return compared.error();
     }
-    list.push_back(json_of(*compared));
+    list.push_back(json_of(*compared, bent));
   }
   *out = handed_out(text_of(list, 1));
   return success();
@@ -191,6 +250,40 @@ cw_code cw_options_set(cw_options* options, const char* name, const char* value,
     }
     const Status set = set_from_text(*option, value, options->options);
     return set ? set : Error{set.error().code, std::string(name) + ": " + set.error().message};
+  });
+}
+
+cw_code cw_options_set_joints(cw_options* options, const cw_array* joints, const cw_array* along,
+                              cw_error** error) {
+  return call(error, [&]() -> Status {
+    if (Status given = all_given({{options, "the options"}, {joints, "the joints"}}); !given) {
+      return given;
+    }
+    const Result<Points> points = Points::of(*joints, "the joints");
+    if (!points) {
+      return points.error();
+    }
+    const Result<Points> directions =
+        along != nullptr ? Points::of(*along, "the directions of the joints") : Points();
+    if (!directions) {
+      return directions.error();
+    }
+    const auto positions = points->view();
+    const auto vectors = directions->view();
+    if (along != nullptr && vectors.size() != positions.size()) {
+      return Error{ErrorCode::mismatch, "there are " + std::to_string(positions.size()) +
+                                            " joints, but " + std::to_string(vectors.size()) +
+                                            " directions; give one for each"};
+    }
+    std::vector<LimbJoint> limbs;
+    for (std::size_t j = 0; j < positions.size(); ++j) {
+      limbs.push_back({positions[j], along != nullptr ? vectors[j] : Vec3(Vec3::Zero())});
+      if (!limbs.back().position.allFinite() || !limbs.back().along.allFinite()) {
+        return Error{ErrorCode::malformed, "joint " + std::to_string(j) + " is not finite"};
+      }
+    }
+    options->joints = std::move(limbs);
+    return success();
   });
 }
 
@@ -283,7 +376,11 @@ cw_code cw_check(const cw_mesh_view* model, const cw_mesh_view* cage, int flags,
                                   .allow_inner_shells = (flags & CW_CHECK_INNER_SHELLS) != 0,
                                   .weld = true,
                                   .max_listed = max_listed};
-    return judge(meshes->model, meshes->cage.polygons(), options, progress, out);
+    const MeshArgument& mesh = meshes->model;
+    const PolygonMesh around = meshes->cage.polygons();
+    return (flags & CW_CHECK_IGNORE_SPECKS) != 0
+               ? judge_without_specks(mesh, around, options, progress, out)
+               : judge_whole(mesh, around, options, progress, out);
   });
 }
 

@@ -34,6 +34,7 @@ void add_binding_options(CLI::App& command, BindingOptions& options) {
   add_pose_option(command, options.choice);
   add_only_option(command, options.choice,
                   "The cage is for this object or group of the model; all else stays as it is");
+  add_specks_option(command, options.choice, "Bind the model");
   add_cage_object_option(command, options.choice);
 }
 

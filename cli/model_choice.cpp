@@ -2,10 +2,11 @@
 
 #include "load.h"
 
+#include <cagewright/cage/specks.h>
+
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -94,6 +95,12 @@ void add_only_option(CLI::App& command, ModelChoice& choice, const std::string& 
                      purpose + "; NAME#2 is the second of that name; repeatable");
 }
 
+void add_specks_option(CLI::App& command, ModelChoice& choice, const std::string& purpose) {
+  command.add_flag("--ignore-specks", choice.ignore_specks,
+                   purpose + " without tiny pieces far from the rest, and vertices that no face "
+                             "uses: what 'generate --ignore-specks' makes a cage for");
+}
+
 void add_cage_object_option(CLI::App& command, ModelChoice& choice) {
   command.add_option("--cage-object", choice.cage_objects,
                      "The cage is this object of its file; where the model is in the same file, it "
@@ -133,46 +140,9 @@ Result<std::vector<bool>> faces_named(const ModelFile& file, std::span<const std
   return faces;
 }
 
-MeshPart part_of(const PolygonMesh& mesh, const std::vector<bool>& faces) {
-  constexpr Index unused = std::numeric_limits<Index>::max();
-  std::vector<Index> number(mesh.positions.size(), unused);
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    if (faces[f]) {
-      for (const Index v : mesh.face(f)) {
-        number[v] = 0;
-      }
-    }
-  }
-  MeshPart part;
-  part.mesh.group_names = mesh.group_names;
-  for (Index v = 0; v < number.size(); ++v) { // the order of the file
-    if (number[v] == unused) {
-      continue;
-    }
-    number[v] = static_cast<Index>(part.vertices.size());
-    part.vertices.push_back(v);
-    part.mesh.positions.push_back(mesh.positions[v]);
-    if (!mesh.colors.empty()) {
-      part.mesh.colors.push_back(mesh.colors[v]);
-    }
-  }
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    if (!faces[f]) {
-      continue;
-    }
-    std::vector<Index> corners(mesh.face(f).begin(), mesh.face(f).end());
-    for (Index& v : corners) {
-      v = number[v];
-    }
-    part.mesh.add_face(corners);
-    if (!mesh.face_groups.empty()) {
-      part.mesh.face_groups.push_back(mesh.face_groups[f]);
-    }
-  }
-  return part;
-}
+namespace {
 
-Result<PolygonMesh> load_chosen(const std::string& path, const ModelChoice& choice) {
+Result<PolygonMesh> load_named(const std::string& path, const ModelChoice& choice) {
   Result<ModelFile> file = load_model(path, choice.pose);
   if (!file) {
     return file.error();
@@ -185,6 +155,49 @@ Result<PolygonMesh> load_chosen(const std::string& path, const ModelChoice& choi
     return in_file(path, faces.error());
   }
   return part_of(file->mesh(), *faces).mesh;
+}
+
+Result<MeshPart> without_specks(const std::string& path, const PolygonMesh& mesh) {
+  const Result<std::vector<bool>> faces = faces_in_no_speck(mesh);
+  return faces ? part_of(mesh, *faces) : Result<MeshPart>(in_file(path, faces.error()));
+}
+
+/// What the cage is for, of a model and a cage.
+Result<MeshPart> bound_part(const ModelFile& model, const std::string& path,
+                            const ModelChoice& choice, bool is_beside_cage) {
+  const PolygonMesh& whole = model.mesh();
+  if (choice.only.empty() && !is_beside_cage) {
+    MeshPart all{whole, std::vector<Index>(whole.positions.size())};
+    std::iota(all.vertices.begin(), all.vertices.end(), Index(0));
+    return all;
+  }
+  Result<std::vector<bool>> faces = choice.only.empty()
+                                        ? faces_named(model, choice.cage_objects, "--cage-object")
+                                        : faces_named(model, choice.only, "--only");
+  if (!faces) {
+    return in_file(path, faces.error());
+  }
+  if (choice.only.empty()) {
+    faces->flip();
+  }
+  MeshPart part = part_of(whole, *faces);
+  if (part.mesh.face_count() == 0) {
+    return Error{ErrorCode::invalid_option,
+                 path + ": --cage-object: all objects of the file are the cage; nothing is left "
+                        "for the model"};
+  }
+  return part;
+}
+
+} // namespace
+
+Result<PolygonMesh> load_chosen(const std::string& path, const ModelChoice& choice) {
+  Result<PolygonMesh> mesh = load_named(path, choice);
+  if (!mesh || !choice.ignore_specks) {
+    return mesh;
+  }
+  Result<MeshPart> rest = without_specks(path, *mesh);
+  return rest ? std::move(rest->mesh) : Result<PolygonMesh>(rest.error());
 }
 
 Result<PolygonMesh> load_chosen(const std::vector<std::string>& paths, const ModelChoice& choice) {
@@ -244,26 +257,20 @@ Result<ModelAndCage> load_model_and_cage(const std::string& model, const std::st
   std::error_code ignored;
   const bool is_beside_cage =
       !choice.cage_objects.empty() && std::filesystem::equivalent(model, cage, ignored);
-  if (choice.only.empty() && !is_beside_cage) {
-    meshes.bound.mesh = meshes.model();
-    meshes.bound.vertices.resize(meshes.model().positions.size());
-    std::iota(meshes.bound.vertices.begin(), meshes.bound.vertices.end(), Index(0));
-    return meshes;
+  Result<MeshPart> part = bound_part(meshes.file, model, choice, is_beside_cage);
+  if (!part) {
+    return part.error();
   }
-  Result<std::vector<bool>> faces =
-      choice.only.empty() ? faces_named(meshes.file, choice.cage_objects, "--cage-object")
-                          : faces_named(meshes.file, choice.only, "--only");
-  if (!faces) {
-    return in_file(model, faces.error());
-  }
-  if (choice.only.empty()) {
-    faces->flip();
-  }
-  meshes.bound = part_of(meshes.model(), *faces);
-  if (meshes.bound.mesh.face_count() == 0) {
-    return Error{ErrorCode::invalid_option,
-                 model + ": --cage-object: all objects of the file are the cage; nothing is left "
-                         "for the model"};
+  meshes.bound = std::move(*part);
+  if (choice.ignore_specks) {
+    Result<MeshPart> rest = without_specks(model, meshes.bound.mesh);
+    if (!rest) {
+      return rest.error();
+    }
+    for (Index& v : rest->vertices) {
+      v = meshes.bound.vertices[v];
+    }
+    meshes.bound = std::move(*rest);
   }
   return meshes;
 }

@@ -2,6 +2,7 @@
 /// Which part of a model file a command is about, and in which pose.
 #pragma once
 
+#include "mesh/mesh_part.h"
 #include <cagewright/core/result.h>
 #include <cagewright/io/model_file.h>
 #include <cagewright/io/pose.h>
@@ -15,11 +16,12 @@
 
 namespace cagewright::cli {
 
-/// What the options --pose, --only and --cage-object say.
+/// What the options --pose, --only, --ignore-specks and --cage-object say.
 struct ModelChoice {
   Pose pose = Pose::shown;
   std::vector<std::string> only;         ///< objects or groups by name; none: the whole model
   std::vector<std::string> cage_objects; ///< of the cage's file; none: all of it
+  bool ignore_specks = false;            ///< see find_specks()
 };
 
 /// Declares --pose.
@@ -27,6 +29,9 @@ void add_pose_option(CLI::App& command, ModelChoice& choice);
 
 /// Declares --only, with what it is for.
 void add_only_option(CLI::App& command, ModelChoice& choice, const std::string& purpose);
+
+/// Declares --ignore-specks.
+void add_specks_option(CLI::App& command, ModelChoice& choice, const std::string& purpose);
 
 /// Declares --cage-object.
 void add_cage_object_option(CLI::App& command, ModelChoice& choice);
@@ -39,13 +44,6 @@ void add_cage_object_option(CLI::App& command, ModelChoice& choice);
 /// Errors: invalid_option (nothing has such a name; the message lists those there are).
 Result<std::vector<bool>> faces_named(const ModelFile& file, std::span<const std::string> names,
                                       const std::string& option);
-
-/// A part of a mesh, with the vertices that its faces use.
-struct MeshPart {
-  PolygonMesh mesh;
-  std::vector<Index> vertices; ///< for each of them its number in the whole
-};
-MeshPart part_of(const PolygonMesh& mesh, const std::vector<bool>& faces);
 
 /// Reads a model and takes the chosen part of it.
 Result<PolygonMesh> load_chosen(const std::string& path, const ModelChoice& choice);
@@ -60,7 +58,8 @@ Result<PolygonMesh> load_cage(const std::string& path, const ModelChoice& choice
 struct ModelAndCage {
   ModelFile file;
   MeshPart bound; ///< what the cage is for: the chosen objects; where there are none and the
-                  ///< cage is an object of the same file, the others; else all
+                  ///< cage is an object of the same file, the others; else all. Without specks,
+                  ///< where they are to be ignored
   PolygonMesh cage;
 
   [[nodiscard]] const PolygonMesh& model() const { return file.mesh(); } ///< all of the file

@@ -6,6 +6,8 @@
 #include "report/verdict.h"
 #include "session.h"
 
+#include "io/source.h"
+#include <cagewright/cage/specks.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/mesh/weld.h>
 #include <cagewright/validate/cage_metrics.h>
@@ -76,7 +78,18 @@ int run(const Options& options, const Session& session) {
     return fail(report.error());
   }
   name_model_faces(*report, cuttings.face_of);
-  const std::vector<FileNote> notes = hints(*report, *cage, view, options.files);
+  std::vector<FileNote> notes = hints(*report, *cage, view, options.files);
+  if (report->count(ViolationKind::vertex_outside) > 0 && !options.choice.ignore_specks) {
+    const Result<Specks> specks = find_specks(view, session.progress());
+    if (specks && specks->count > 0) {
+      notes.push_back(
+          {"specks", fmt::format("{}: {} far from the rest of the model; judge the cage "
+                                 "without with: cagewright check {} {} --ignore-specks",
+                                 one_line(options.files.model),
+                                 specks->count == 1 ? "a tiny piece lies" : "some tiny pieces lie",
+                                 options.files.model, options.files.cage)});
+    }
+  }
   const CageMetrics metrics = measure_cage(report->merged_vertices > 0 ? weld(*cage) : *cage, view);
   if (!options.json.empty()) {
     nlohmann::json json = json_of(*report, options.files);
@@ -123,6 +136,7 @@ void add_check(CLI::App& app, Session& session) {
   add_only_option(*command, options->choice,
                   "The cage is for this object or group of the model; its vertices and faces are "
                   "counted on their own");
+  add_specks_option(*command, options->choice, "Judge the cage for the model");
   add_cage_object_option(*command, options->choice);
   command->add_option("--json", options->json, "Write the verdict to this file as JSON");
   command->add_flag("--allow-pieces", options->validate.allow_pieces,

@@ -1,4 +1,5 @@
 #include "coordinate_options.h"
+#include "joints.h"
 #include "json.h"
 #include "load.h"
 #include "model_choice.h"
@@ -32,6 +33,7 @@ struct Options {
   std::string json;
   bool no_poses = false;
   CoordinateArguments coordinates;
+  std::string joints;
   ModelChoice choice;
 };
 
@@ -56,6 +58,10 @@ std::string percent(double fraction) {
 
 std::string pose_cell(const ComparedCage& cage, StandardPose pose, double PoseError::*which) {
   return cage.poses ? percent(cage.poses->of[static_cast<std::size_t>(pose)].*which) : "-";
+}
+
+std::string bend_cell(const ComparedCage& cage, double LimbBendError::*which) {
+  return cage.bends.empty() ? "-" : percent(summed(cage.bends).*which);
 }
 
 const std::vector<Row>& rows() {
@@ -92,6 +98,18 @@ const std::vector<Row>& rows() {
        [](const ComparedCage& c) -> std::string {
          return c.poses ? fmt::format("{}, {}", c.posed[0].in_contact, c.posed[1].in_contact) : "-";
        }},
+      {"limbs bent: mean error %",
+       [](const ComparedCage& c) { return bend_cell(c, &LimbBendError::mean); }},
+      {"limbs bent: greatest %",
+       [](const ComparedCage& c) { return bend_cell(c, &LimbBendError::max); }},
+      {"limbs bent: drag of the rest %",
+       [](const ComparedCage& c) { return bend_cell(c, &LimbBendError::drag); }},
+      {"limbs bent: leave the cage %",
+       [](const ComparedCage& c) { return bend_cell(c, &LimbBendError::left); }},
+      {"limbs bent: of 45 degrees",
+       [](const ComparedCage& c) -> std::string {
+         return c.bends.empty() ? "-" : fmt::format("{:.1f}", summed(c.bends).reached);
+       }},
       {"pull of unseen vertices %",
        [](const ComparedCage& c) -> std::string {
          return c.poses ? fmt::format("{:.2f}", 100 * c.unseen.mean) : "-";
@@ -101,7 +119,9 @@ const std::vector<Row>& rows() {
 }
 
 /// \param is_auto  each cage has coordinates of its own
-std::string as_text(const std::vector<ComparedCage>& cages, bool is_auto) {
+/// \param limbs    that were bent; null: none
+std::string as_text(const std::vector<ComparedCage>& cages, bool is_auto,
+                    const BendableLimbs* limbs) {
   std::vector<Row> table = rows();
   if (is_auto) {
     table.push_back({"coordinates", [](const ComparedCage& c) -> std::string {
@@ -137,6 +157,9 @@ std::string as_text(const std::vector<ComparedCage>& cages, bool is_auto) {
                       cage.name, first_violation(cage.validity));
     }
   }
+  text += limbs == nullptr ? ""
+                           : fmt::format("limbs bent by 45 degrees, in four directions each: {}\n",
+                                         limbs->count());
   return text + "Gaps and errors are in % of the model's diagonal.\n";
 }
 
@@ -172,6 +195,20 @@ int run(const Options& options, const Session& session) {
   const TriangleMesh model = to_triangle_mesh(*mesh);
   const ModelVolume volume = model_volume(model);
   const Progress progress = session.progress();
+  const Result<std::vector<LimbJoint>> joints = limb_joints(options.joints, options.choice.pose);
+  if (!joints) {
+    return fail(joints.error());
+  }
+  std::optional<BendableLimbs> limbs;
+  if (!options.no_poses) {
+    Result<BendableLimbs> found = BendableLimbs::of(model, *joints, progress.quiet());
+    if (found) { // else the model has no extent, and no limbs
+      limbs = std::move(*found);
+    } else if (found.error().code == ErrorCode::cancelled) {
+      return fail(found.error());
+    }
+  }
+  const BendableLimbs* const bent = limbs && limbs->count() > 0 ? &*limbs : nullptr;
   std::vector<ComparedCage> cages;
   const auto count = static_cast<double>(options.cages.size());
   for (std::size_t i = 0; i < options.cages.size(); ++i) {
@@ -186,7 +223,7 @@ int run(const Options& options, const Session& session) {
       return fail(own.error());
     }
     Result<ComparedCage> compared =
-        compare_cage(options.cages[i], *cage, model, volume, *own ? &**own : nullptr,
+        compare_cage(options.cages[i], *cage, model, volume, *own ? &**own : nullptr, bent,
                      is_auto ? share.part(0.5, 1) : share);
     if (!compared) {
       return fail(compared.error());
@@ -200,13 +237,13 @@ int run(const Options& options, const Session& session) {
         {"model", options.model},         {"coordinates", options.coordinates.kind},
         {"notes", notes_as_json()},       {"cages", nlohmann::json::array()}};
     for (const ComparedCage& cage : cages) {
-      json["cages"].push_back(json_of(cage));
+      json["cages"].push_back(json_of(cage, bent));
     }
     if (const Status written = write_json(options.json, json); !written) {
       return fail(written.error());
     }
   }
-  session.say(as_text(cages, is_auto && !options.no_poses));
+  session.say(as_text(cages, is_auto && !options.no_poses, bent));
   return done;
 }
 
@@ -214,17 +251,21 @@ int run(const Options& options, const Session& session) {
 
 void add_compare(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand(
-      "compare", "Figures of several cages of a model side by side, valid or not, and how well "
-                 "the model follows each through a standard bend and twist");
+      "compare",
+      "Figures of several cages of a model side by side, valid or not, and how well "
+      "the model follows each through a standard bend and twist, and a bend of each limb");
   auto options = std::make_shared<Options>();
   command->add_option("model", options->model, "The model that the cages are for")->required();
   command->add_option("cages", options->cages, "The cages")->required();
   add_pose_option(*command, options->choice);
   add_only_option(*command, options->choice, "The cages are for this object or group of the model");
+  add_specks_option(*command, options->choice, "Compare the cages for the model");
   add_coordinate_options(*command, options->coordinates, true);
+  add_joints_option(*command, options->joints,
+                    "Where limbs are bent, instead of where the shape says");
   command->add_option("--json", options->json, "Write the same and more to this file as JSON");
   command->add_flag("--no-poses", options->no_poses,
-                    "Leave out the bend and the twist, which take longest on large models");
+                    "Leave out the bends and the twist, which take longest on large models");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(*options, session); };
   });

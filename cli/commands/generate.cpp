@@ -1,5 +1,6 @@
 #include "generate/arguments.h"
 #include "generate/run.h"
+#include "joints.h"
 #include "session.h"
 
 #include <memory>
@@ -38,6 +39,9 @@ void add_generate(CLI::App& app, Session& session) {
           "of the model (four times as much: edges half as long), or 'colors': where its "
           "vertex colors are red, and coarser where blue")
       ->option_text("FILE|colors")
+      ->group(std::string(title_of(OptionGroup::model)));
+  add_joints_option(*command, arguments->joints,
+                    "Where limbs bend: a ring of edges goes round the limb there")
       ->group(std::string(title_of(OptionGroup::model)));
   const char* results = "Results";
   command

@@ -25,6 +25,7 @@ struct GenerateArguments {
   ModelChoice choice;
   Emit emit = Emit::cage;
   std::string start;      ///< a file with a cage of the user's own, or empty
+  std::string joints;     ///< a file, or empty
   std::string density;    ///< a file, or "colors"; empty: even
   bool skin_cage = false; ///< the cage follows the model's joints
   GenerateOptions options;

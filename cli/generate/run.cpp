@@ -1,6 +1,7 @@
 #include "generate/run.h"
 
 #include "generate/density.h"
+#include "joints.h"
 #include "json.h"
 #include "load.h"
 #include "model_choice.h"
@@ -142,9 +143,21 @@ int emit_stage(const GenerateArguments& arguments, const Session& session,
   return done;
 }
 
+void tell_of_specks(const GeneratedCage& made, const GenerateArguments& arguments) {
+  for (const Remark& remark : made.remarks) {
+    if (remark.reason == Reason::specks_enclosed) {
+      const FileNote note{"specks", one_line(name_of_models(arguments)) + ": " + remark.message +
+                                        "; leave them out with --ignore-specks"};
+      tell({&note, 1});
+    }
+  }
+}
+
 int make_cage(const GenerateArguments& arguments, const Session& session, const PolygonMesh& model,
-              const PolygonMesh* start, const std::vector<double>& density) {
+              const PolygonMesh* start, const std::vector<double>& density,
+              const std::vector<LimbJoint>& joints) {
   GenerateOptions options = arguments.options;
+  options.joints = joints;
   options.start = start;
   options.density = density;
   const Result<GeneratedCage> made = generate_for_polygons(model, options, session.progress());
@@ -153,6 +166,7 @@ int make_cage(const GenerateArguments& arguments, const Session& session, const 
     return fail(
         in_file(is_about_start ? arguments.start : name_of_models(arguments), made.error()));
   }
+  tell_of_specks(*made, arguments);
   if (const Status written =
           write_outputs(arguments, made->faces, to_triangle_mesh(model), to_json(*made, options));
       !written) {
@@ -191,7 +205,7 @@ Status can_write(const GenerateArguments& arguments, const std::vector<std::stri
 int run_generate(const GenerateArguments& arguments, const Session& session) {
   std::fputs(without_effect(arguments).c_str(), stderr);
   std::vector<std::string> inputs = arguments.models;
-  inputs.insert(inputs.end(), {arguments.density, arguments.start});
+  inputs.insert(inputs.end(), {arguments.density, arguments.joints, arguments.start});
   if (const Status writable = can_write(arguments, inputs); !writable) {
     return fail(writable.error());
   }
@@ -217,6 +231,11 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
     }
     density = std::move(*asked);
   }
+  const Result<std::vector<LimbJoint>> joints =
+      limb_joints(arguments.joints, arguments.choice.pose);
+  if (!joints) {
+    return fail(joints.error());
+  }
   std::optional<PolygonMesh> start;
   if (!arguments.start.empty()) {
     Result<PolygonMesh> read = load_mesh(arguments.start);
@@ -225,7 +244,7 @@ int run_generate(const GenerateArguments& arguments, const Session& session) {
     }
     start = std::move(*read);
   }
-  return make_cage(arguments, session, *mesh, start ? &*start : nullptr, density);
+  return make_cage(arguments, session, *mesh, start ? &*start : nullptr, density, *joints);
 }
 
 } // namespace cagewright::cli

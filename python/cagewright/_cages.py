@@ -86,7 +86,7 @@ def _options(given):
 
 
 def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=None, max_gap=None, quads=False,
-             clearance=0.002, method="envelope", symmetry="auto", pieces="together", density=None, start=None,
+             clearance=0.002, method="envelope", symmetry="auto", pieces="together", density=None, joints=None, start=None,
              threads=None, progress=None, **options):
     """Makes a valid cage round a model.
 
@@ -115,6 +115,8 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
         symmetry: "auto" (an exact mirror image of itself where the model nearly is), "off", or "x", "y", "z".
         pieces: of a model in pieces: "together" in one cage, or "apart" in one each.
         density: V weights above 0: four times the weight makes edges half as long there.
+        joints: J x 3 points where limbs bend, or J x 6 with the direction in which each limb goes on: a ring of edges goes
+            round the limb at each.
         start: a cage of your own, made by hand or for an earlier state of the model: an object with vertices and faces,
             or a pair of them. Its vertices are moved until it is valid and tight; its faces and the order of its
             vertices stay. Only clearance and density are heeded then.
@@ -158,6 +160,12 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
     if density is not None:
         weights, _keep = _arrays.array_of(np.ravel(density), "the density")
         checked(lib.cw_options_set_density, asked.pointer, ctypes.byref(weights))
+    if joints is not None:
+        rows = np.atleast_2d(np.asarray(joints, float))
+        points, _keep_points = _arrays.array_of(np.ascontiguousarray(rows[:, :3]), "the joints")
+        along, _keep_along = _arrays.array_of(np.ascontiguousarray(rows[:, 3:]), "the joints' directions")
+        checked(lib.cw_options_set_joints, asked.pointer, ctypes.byref(points),
+                ctypes.byref(along) if rows.shape[1] > 3 else None)
     if start is not None:
         pair = start if isinstance(start, (tuple, list)) and len(start) == 2 else (start, None)
         own = _arrays.mesh_view(*_arrays.two_parts(*pair, "start"), "start")
@@ -218,7 +226,7 @@ class Verdict:
 
 
 def check(vertices, faces=None, cage_vertices=None, cage_faces=None, *, allow_pieces=False, allow_inner_shells=False,
-          max_listed=20, threads=None, progress=None):
+          ignore_specks=False, max_listed=20, threads=None, progress=None):
     """Judges a cage of a model, exactly: valid, or what is wrong with it and where.
 
     Args:
@@ -226,6 +234,8 @@ def check(vertices, faces=None, cage_vertices=None, cage_faces=None, *, allow_pi
         cage_vertices, cage_faces: the cage, likewise. Objects that have both may stand for either: check(model, cage).
         allow_pieces: accept several closed pieces.
         allow_inner_shells: accept closed pieces within others, oriented inward.
+        ignore_specks: judge it for the model without tiny pieces far from the rest, and without vertices that no face
+            uses, as generate(..., ignore_specks=True) makes one.
         max_listed: how many violations of each kind are listed, None for all; all are counted.
         threads, progress: as for generate().
 
@@ -239,7 +249,7 @@ def check(vertices, faces=None, cage_vertices=None, cage_faces=None, *, allow_pi
     model = _arrays.mesh_view(*parts[:2], "the model")
     cage = _arrays.mesh_view(*parts[2:], "the cage")
     max_listed = 2**31 - 1 if max_listed is None else whole_number(max_listed, "max_listed")
-    flags = (1 if allow_pieces else 0) + (2 if allow_inner_shells else 0)
+    flags = (1 if allow_pieces else 0) + (2 if allow_inner_shells else 0) + (4 if ignore_specks else 0)
 
     def work(control):
         out = ctypes.c_void_p()

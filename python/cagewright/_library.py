@@ -86,6 +86,7 @@ _FUNCTIONS = {
     "cw_options_free": (None, [_handle]),
     "cw_options_set": (c_int, [_handle, _text, _text, _out]),
     "cw_options_set_density": (c_int, [_handle, _array, _out]),
+    "cw_options_set_joints": (c_int, [_handle, _array, _array, _out]),
     "cw_options_set_start": (c_int, [_handle, _mesh, _out]),
     "cw_options_describe": (c_int, [_out, _out]),
     "cw_cage_free": (None, [_handle]),

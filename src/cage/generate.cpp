@@ -6,6 +6,7 @@
 // model (canonical_model.h), and checked on the model itself.
 #include <cagewright/cage/generate.h>
 
+#include "cage/asked_model.h"
 #include "cage/box_cage.h"
 #include "cage/budget.h"
 #include "cage/canonical_model.h"
@@ -20,6 +21,7 @@
 #include "mesh/topology.h"
 #include "quads/quads.h"
 #include <cagewright/cage/option_table.h>
+#include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/validate_cage.h>
 
 #include <algorithm>
@@ -156,6 +158,11 @@ Result<GeneratedCage> improved_cage(TriangleView model, const GenerateOptions& o
   GenerateOptions own = options;
   own.clearance += grid;
   own.max_gap -= options.max_gap > 0 ? grid : 0;
+  std::vector<LimbJoint> joints(options.joints.begin(), options.joints.end());
+  for (LimbJoint& joint : joints) {
+    joint.position = frame->to_unit(joint.position);
+  }
+  own.joints = joints;
   std::vector<double> density;
   if (!options.density.empty()) {
     for (const Index v : canonical.vertices) {
@@ -198,8 +205,18 @@ std::string coordinates(const Vec3& p) {
   return text.data();
 }
 
+Remark with_place(Remark remark) {
+  if (remark.place) {
+    remark.message += " (at " + coordinates(*remark.place) + ")";
+  }
+  return remark;
+}
+
 /// The places are known last, in the model's own coordinates.
-void finish_remarks(GeneratedCage& cage) {
+void finish_remarks(GeneratedCage& cage, const Specks& specks) {
+  if (specks.count > 0) {
+    add(cage, remark_of(specks, false));
+  }
   if (cage.joined > 0) {
     add(cage, {Reason::pieces_joined,
                "pieces share a surface where their own would meet, lie one within another, or be "
@@ -208,15 +225,37 @@ void finish_remarks(GeneratedCage& cage) {
                {}});
   }
   for (Remark& remark : cage.remarks) {
-    if (remark.place) {
-      remark.message += " (at " + coordinates(*remark.place) + ")";
-    }
+    remark = with_place(std::move(remark));
   }
   std::stable_partition(cage.remarks.begin(), cage.remarks.end(),
                         [](const Remark& remark) { return remark.is_shortfall; });
 }
 
+/// A cage for what is asked for of the model.
+Result<GeneratedCage> generate_for_asked(TriangleView model, const GenerateOptions& options,
+                                         const Progress& progress) {
+  const Result<AskedModel> asked =
+      asked_model(PolygonMesh(TriangleMesh{{model.positions.begin(), model.positions.end()},
+                                           {model.triangles.begin(), model.triangles.end()}}),
+                  options, progress.quiet());
+  if (!asked) {
+    return asked.error();
+  }
+  Result<GeneratedCage> made =
+      generate(to_triangle_mesh(asked->mesh), asked->options(options), progress);
+  if (made) {
+    append_remarks(*made, asked->remarks);
+  }
+  return made;
+}
+
 } // namespace
+
+void append_remarks(GeneratedCage& cage, std::span<const Remark> remarks) {
+  for (const Remark& remark : remarks) {
+    cage.remarks.push_back(with_place(remark));
+  }
+}
 
 std::string_view name_of(Reason reason) {
   switch (reason) {
@@ -234,6 +273,12 @@ std::string_view name_of(Reason reason) {
     return "pieces_joined";
   case Reason::start_changed:
     return "start_changed";
+  case Reason::specks_enclosed:
+    return "specks_enclosed";
+  case Reason::specks_ignored:
+    return "specks_ignored";
+  case Reason::openings_closed:
+    return "openings_closed";
   }
   return "unknown"; // no default above: the compiler points here when a reason is added
 }
@@ -246,6 +291,13 @@ Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& option
                                const Progress& progress) {
   if (const Status good = check(model, options); !good) {
     return good.error();
+  }
+  if (is_model_changed(options)) {
+    return generate_for_asked(model, options, progress);
+  }
+  const Result<Specks> specks = find_specks(model, progress.quiet());
+  if (!specks) {
+    return specks.error();
   }
   // Of the time; the figures come after. Boxes are made soon.
   const double made_by = options.start == nullptr && options.method == Method::boxes ? 0.9 : 0.97;
@@ -260,7 +312,7 @@ Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& option
   if (made->box_tree) {
     made->boxes = boxes_of(*made->box_tree);
   }
-  finish_remarks(*made);
+  finish_remarks(*made, *specks);
   made->figures = measure_cage(made->faces, model, {}, progress.part(made_by, 1));
   if (progress.cancelled()) {
     return Error::cancelled();

@@ -1,5 +1,6 @@
 #include <cagewright/cage/generate_for_polygons.h>
 
+#include "cage/asked_model.h"
 #include <cagewright/cage/generate.h>
 #include <cagewright/mesh/triangle_mesh.h>
 #include <cagewright/mesh/triangulate.h>
@@ -14,6 +15,19 @@ namespace cagewright {
 Result<GeneratedCage> generate_for_polygons(const PolygonMesh& model,
                                             const GenerateOptions& options,
                                             const Progress& progress) {
+  if (is_model_changed(options) &&
+      (options.density.empty() || options.density.size() == model.positions.size())) {
+    const Result<AskedModel> asked = asked_model(model, options, progress.quiet());
+    if (!asked) {
+      return asked.error();
+    }
+    Result<GeneratedCage> made =
+        generate_for_polygons(asked->mesh, asked->options(options), progress);
+    if (made) {
+      append_remarks(*made, asked->remarks);
+    }
+    return made;
+  }
   constexpr double usual = 0.95; // of the time
   constexpr double judged = 0.96;
   const TriangleMesh own = to_triangle_mesh(model);

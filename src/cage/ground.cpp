@@ -25,6 +25,22 @@ Ground::Ground(TriangleView model, const GenerateOptions& options,
   }
 }
 
+std::vector<LimbJoint> Ground::joints_here() const {
+  std::vector<LimbJoint> joints(options_.joints.begin(), options_.joints.end());
+  for (LimbJoint& joint : joints) {
+    if (is_half()) {
+      const Vec3 end = frame_->to_frame(joint.position + joint.along);
+      joint.position = frame_->to_frame(joint.position);
+      joint.along = end - joint.position;
+      if (joint.position.x() < 0) { // the half is at x > 0
+        joint.position.x() *= -1;
+        joint.along.x() *= -1;
+      }
+    }
+  }
+  return joints;
+}
+
 const ModelSurface& Ground::surface() const {
   if (!surface_) {
     surface_ = std::make_unique<const ModelSurface>(enclosed(), diagonal_);

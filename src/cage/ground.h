@@ -51,6 +51,8 @@ public:
   }
   /// Of what is to be enclosed.
   [[nodiscard]] const ModelSurface& surface() const;
+  /// The joints of the options, in the coordinates of the ground.
+  [[nodiscard]] std::vector<LimbJoint> joints_here() const;
   /// Of the model: what all lengths are fractions of.
   [[nodiscard]] double diagonal() const { return diagonal_; }
 

@@ -34,6 +34,7 @@ struct Candidate {
   double length = 0;  ///< of a limb as wide as the ring, and of its volume; in widths
   double surface = 0; ///< the limb's part of the whole surface
   int copies = 1;     ///< in the whole cage
+  Plane plane;        ///< that it was found along
   SeamBand band;
 };
 
@@ -90,12 +91,23 @@ public:
           });
       if (is_there && chain.simple && chain.vertices.size() >= (chain.closed ? 4 : 3)) {
         if (std::optional<Candidate> candidate = candidate_of(chain)) {
+          candidate->plane = plane;
           candidate->band = band_of(chain, plane, candidate->width);
           candidates.push_back(std::move(*candidate));
         }
       }
     }
     return candidates;
+  }
+
+  /// 1 if the limb is on the side to which the normal of the ring's plane points, else -1.
+  [[nodiscard]] double toward_limb(const Candidate& ring) const {
+    double sum = 0;
+    for (const Index f : ring.limb) {
+      const Corners t = corners_of(mesh_, f);
+      sum += triangle_area(t) * ((t[0] + t[1] + t[2]) / 3 - ring.center).dot(ring.plane.normal);
+    }
+    return sum < 0 ? -1 : 1;
   }
 
   /// The parts of the cage between the rings: those round larger limbs come first.
@@ -259,14 +271,15 @@ private:
   double room_ = 0;
 };
 
-bool leave_room(const Candidate& a, const Candidate& b) {
-  constexpr double room = 0.8; // widths of the wider ring
-  if ((a.center - b.center).norm() < room * std::max(a.width, b.width)) {
-    return false;
-  }
-  return std::none_of(a.vertices.begin(), a.vertices.end(), [&](Index v) {
+bool share_vertices(const Candidate& a, const Candidate& b) {
+  return std::any_of(a.vertices.begin(), a.vertices.end(), [&](Index v) {
     return std::find(b.vertices.begin(), b.vertices.end(), v) != b.vertices.end();
   });
+}
+
+bool leave_room(const Candidate& a, const Candidate& b) {
+  constexpr double room = 0.8; // widths of the wider ring
+  return (a.center - b.center).norm() >= room * std::max(a.width, b.width) && !share_vertices(a, b);
 }
 
 bool has_room(const Candidate& candidate, std::span<const Candidate> others) {
@@ -359,6 +372,124 @@ std::vector<Candidate> bends(const Finder& finder, std::span<const LimbCut> cuts
   return all;
 }
 
+/// Rings among which there is room, as many as the vertices allow.
+class Chosen {
+public:
+  explicit Chosen(int vertices) : vertices_(vertices), most_(most_rings(vertices)) {}
+
+  void add(std::vector<Candidate> candidates) {
+    constexpr double least_share = 3; // vertices, if limbs have them by their surface
+    for (Candidate& candidate : candidates) {
+      if (count_ + candidate.copies <= most_ && candidate.surface * vertices_ >= least_share &&
+          has_room(candidate, rings_)) {
+        keep(std::move(candidate));
+      }
+    }
+  }
+
+  /// These are asked for: they may be near each other, and be more.
+  void add_joints(std::vector<Candidate> candidates) {
+    sort_by(candidates, [](const Candidate& c) { return c.surface; });
+    for (Candidate& candidate : candidates) {
+      const bool is_apart = std::none_of(rings_.begin(), rings_.end(), [&](const Candidate& other) {
+        return share_vertices(candidate, other) ||
+               (candidate.center - other.center).norm() < 0.25 * candidate.width;
+      });
+      if (count_ + candidate.copies <= 2 * most_ && is_apart) {
+        keep(std::move(candidate));
+      }
+    }
+    most_ = std::max(most_, count_);
+  }
+
+  /// From the largest limb to the smallest, which may lie within a larger one.
+  std::vector<Candidate> taken() && {
+    sort_by(rings_, [](const Candidate& c) { return c.surface; });
+    return std::move(rings_);
+  }
+
+private:
+  void keep(Candidate candidate) {
+    count_ += candidate.copies;
+    rings_.push_back(std::move(candidate));
+  }
+
+  int vertices_;
+  int most_;
+  int count_ = 0;
+  std::vector<Candidate> rings_;
+};
+
+/// The directions in which planes through a joint are tried: near its own, or all round.
+std::vector<Vec3> directions_at(const LimbJoint& joint, std::span<const LimbCut> cuts) {
+  constexpr double near = 0.8; // the cosine of about 37 degrees
+  std::vector<Vec3> all = directions_of(cuts);
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      for (int z = 0; z <= 2; ++z) {
+        if (z > 0 || y > 0 || (y == 0 && x > 0)) {
+          all.push_back(Vec3(x, y, z).normalized());
+        }
+      }
+    }
+  }
+  const double length = joint.along.norm();
+  if (!(length > 0)) {
+    return all;
+  }
+  const Vec3 along = joint.along / length;
+  std::vector<Vec3> directions = {along};
+  std::ranges::copy_if(all, std::back_inserter(directions),
+                       [&](const Vec3& d) { return std::abs(d.dot(along)) > near; });
+  return directions;
+}
+
+/// The ring round each joint, if there is one: that of the smallest area.
+std::vector<Candidate> at_joints(const Finder& finder, std::span<const LimbCut> cuts,
+                                 std::span<const LimbJoint> joints) {
+  constexpr double off_center = 0.75; // widths
+  std::vector<std::optional<Candidate>> found(joints.size());
+  parallel_for(0, joints.size(), 1, [&](std::size_t i) {
+    const Vec3& position = joints[i].position;
+    for (const Vec3& direction : directions_at(joints[i], cuts)) {
+      for (Candidate& candidate : finder.candidates({position, direction}, nullptr)) {
+        const bool is_round = (candidate.center - position).norm() < off_center * candidate.width;
+        if (is_round && (!found[i] || candidate.width < found[i]->width)) {
+          found[i] = std::move(candidate);
+        }
+      }
+    }
+  });
+  std::vector<Candidate> rings;
+  for (std::optional<Candidate>& ring : found) {
+    if (ring) {
+      rings.push_back(std::move(*ring));
+    }
+  }
+  return rings;
+}
+
+std::vector<Candidate> chosen_rings(const Finder& finder, TriangleView start,
+                                    std::span<const LimbCut> cuts, int vertices,
+                                    std::span<const LimbJoint> joints) {
+  Chosen chosen(vertices);
+  chosen.add_joints(at_joints(finder, cuts, joints));
+  chosen.add(beginnings(finder, cuts, start.positions));
+  chosen.add(bends(finder, cuts));
+  return std::move(chosen).taken();
+}
+
+LimbRings packed(const Finder& finder, std::span<const Candidate> chosen) {
+  LimbRings rings;
+  rings.parts = finder.parts_between(chosen);
+  rings.bands.emplace_back(); // of the body
+  for (const Candidate& ring : chosen) {
+    rings.bands.push_back(ring.band);
+    rings.count += ring.copies;
+  }
+  return rings;
+}
+
 } // namespace
 
 std::vector<LimbCut> limb_cuts(TriangleView model, const Progress& progress) {
@@ -376,37 +507,41 @@ std::vector<LimbCut> limb_cuts(TriangleView model, const Progress& progress) {
   return cuts;
 }
 
-LimbRings limb_rings(TriangleView start, std::span<const LimbCut> cuts, int vertices) {
-  constexpr double least_share = 3; // vertices, if limbs have them by their surface
-  const int most = most_rings(vertices);
+LimbRings limb_rings(TriangleView start, std::span<const LimbCut> cuts, int vertices,
+                     std::span<const LimbJoint> joints) {
   const Finder finder(start);
-  std::vector<Candidate> chosen;
-  LimbRings rings;
-  const auto choose = [&](std::vector<Candidate> candidates) {
-    for (Candidate& candidate : candidates) {
-      if (rings.count + candidate.copies <= most && candidate.surface * vertices >= least_share &&
-          has_room(candidate, chosen)) {
-        rings.count += candidate.copies;
-        chosen.push_back(std::move(candidate));
-      }
-    }
-  };
-  choose(beginnings(finder, cuts, start.positions));
-  choose(bends(finder, cuts));
-  // From the largest limb to the smallest, which may lie within a larger one.
-  sort_by(chosen, [](const Candidate& c) { return c.surface; });
-  rings.parts = finder.parts_between(chosen);
-  rings.bands.emplace_back(); // of the body
-  for (const Candidate& ring : chosen) {
-    rings.bands.push_back(ring.band);
-  }
-  return rings;
+  return packed(finder, chosen_rings(finder, start, cuts, vertices, joints));
 }
 
 LimbRings find_limb_rings(TriangleView start, TriangleView model, int vertices,
-                          const Progress& progress) {
-  return most_rings(vertices) > 0 ? limb_rings(start, limb_cuts(model, progress), vertices)
+                          std::span<const LimbJoint> joints, const Progress& progress) {
+  return most_rings(vertices) > 0 ? limb_rings(start, limb_cuts(model, progress), vertices, joints)
                                   : LimbRings();
+}
+
+LimbRings rings_at_joints(TriangleView start, std::span<const LimbJoint> joints, int vertices) {
+  const Finder finder(start);
+  Chosen chosen(vertices);
+  chosen.add_joints(at_joints(finder, {}, joints));
+  return packed(finder, std::move(chosen).taken());
+}
+
+std::vector<Limb> find_limbs(TriangleView surface, std::span<const LimbCut> cuts, int vertices,
+                             std::span<const LimbJoint> joints) {
+  const Finder finder(surface);
+  std::vector<Limb> limbs;
+  std::vector<Candidate> rings;
+  if (joints.empty()) {
+    rings = chosen_rings(finder, surface, cuts, vertices, {});
+  } else {
+    rings = at_joints(finder, cuts, joints);
+    sort_by(rings, [](const Candidate& c) { return c.surface; });
+  }
+  for (Candidate& ring : rings) {
+    const Vec3 along = finder.toward_limb(ring) * ring.plane.normal;
+    limbs.push_back({{ring.center, along}, ring.width, std::move(ring.limb)});
+  }
+  return limbs;
 }
 
 std::vector<std::vector<Index>> rings_between(const PolygonMesh& cage,

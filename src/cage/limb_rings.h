@@ -4,6 +4,7 @@
 
 #include "improve/seam_band.h"
 #include "obb/oriented_box.h"
+#include <cagewright/cage/generate_options.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/mesh/triangle_mesh.h>
@@ -48,12 +49,31 @@ struct LimbRings {
 ///                  in the coordinates of the cuts
 /// \param vertices  of the cage to be made; a fifth of them may be on rings
 /// Cost: O(planes * faces), some hundred planes.
-LimbRings limb_rings(TriangleView start, std::span<const LimbCut> cuts, int vertices);
+/// \param joints  where rings are wanted first of all: two fifths of the vertices may be on rings
+///                then. Of the rings in planes through a joint that which bounds the smallest area
+///                is taken, in planes across its direction as far as that is known
+LimbRings limb_rings(TriangleView start, std::span<const LimbCut> cuts, int vertices,
+                     std::span<const LimbJoint> joints = {});
 
 /// The rings on the start for the limbs of the model; none, without a search, if there are too few
 /// vertices for one, or none is asked for (0).
 LimbRings find_limb_rings(TriangleView start, TriangleView model, int vertices,
-                          const Progress& progress = {});
+                          std::span<const LimbJoint> joints = {}, const Progress& progress = {});
+
+/// The rings at joints alone: none about which no ring goes.
+LimbRings rings_at_joints(TriangleView start, std::span<const LimbJoint> joints, int vertices);
+
+/// A limb, as it hangs on the rest of the model.
+struct Limb {
+  LimbJoint joint;          ///< where it bends; `along` has length one
+  double width = 0;         ///< of the limb there: the diameter of a circle of its cross-section
+  std::vector<Index> faces; ///< of the surface, beyond the joint
+};
+
+/// The limbs of a closed surface that limb_rings() would put rings on, largest first; those at the
+/// joints where some are given.
+std::vector<Limb> find_limbs(TriangleView surface, std::span<const LimbCut> cuts, int vertices,
+                             std::span<const LimbJoint> joints = {});
 
 /// The closed loops of edges between the parts that the faces of a whole cage belong to.
 std::vector<std::vector<Index>> rings_between(const PolygonMesh& cage,

@@ -109,8 +109,17 @@ const std::array options_table = {
                "What a model in several pieces gets. together: one cage, with thin bridges; apart: "
                "a closed surface for each group of pieces that are apart.",
                OptionGroup::model, choice<&O::pieces>(piece_words)},
+    CageOption{"ignore-specks", "Ignore specks",
+               "Leave out tiny pieces far from the rest, as scans have them, and vertices that no "
+               "face uses: the cage is made for what remains.",
+               OptionGroup::model, choice<&O::ignore_specks>(off_on)},
+    CageOption{"solid", "Solid",
+               "Close the openings of an open model, so that a dome, a vase or a pipe gets one "
+               "solid cage instead of a thin one that goes in and out.",
+               OptionGroup::model, choice<&O::solid>(off_on)},
     CageOption{"closing", "Closing",
-               "Holes and gaps narrower than twice this part of the model's diagonal are filled.",
+               "Holes and gaps narrower than twice this part of the model's diagonal are filled; "
+               "with solid, openings that are no wider are closed, or all of them (0).",
                OptionGroup::envelope, length(&O::closing, 0)},
     CageOption{"envelope-resolution", "Envelope resolution",
                "Voxels along the model's diagonal: finer ones follow narrow gaps and take longer.",

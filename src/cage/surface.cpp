@@ -46,24 +46,41 @@ struct Made {
 
 Result<Made> triangles_on(const Ground& ground, const Start& start, const GenerateOptions& options,
                           const Progress& progress) {
-  const ImproveOptions budget = ground.budget(start.clearance);
-  Result<Triangles> made =
-      options.max_gap > 0 ? improve_to_gap(ground, start.surface, budget, options.max_gap, progress)
-                          : improve_well_shaped(ground, start.surface, budget, progress);
+  ImproveOptions budget = ground.budget(start.clearance);
+  const LimbRings rings =
+      options.joints.empty()
+          ? LimbRings()
+          : rings_at_joints(start.surface, ground.joints_here(), vertices_allowed(options));
+  if (rings.count > 0) {
+    budget.parts = rings.parts;
+    budget.bands = rings.bands;
+  }
+  constexpr double usual = 0.9; // of the time, with rings
+  const auto run = [&](double from) {
+    const Progress share =
+        progress.part(from == 0 ? 0 : usual, from == 0 && rings.count > 0 ? usual : 1);
+    return options.max_gap > 0
+               ? improve_to_gap(ground, start.surface, budget, options.max_gap, share)
+               : improve_well_shaped(ground, start.surface, budget, share);
+  };
+  Result<Triangles> made = run(0);
+  if (rings.count > 0 && made && !made->improved.report.reached) {
+    budget.parts = {}; // without rings the budget may be enough
+    budget.bands = {};
+    made = run(1);
+  }
   if (!made) {
     return made.error();
   }
-  return Made{PolygonMesh(made->improved.cage),
-              {},
-              std::move(made->improved.report),
-              made->gap,
-              made->farthest};
+  return Made{PolygonMesh(made->improved.cage), std::move(made->improved.parts),
+              std::move(made->improved.report), made->gap, made->farthest};
 }
 
 Result<Made> quads_on(const Ground& ground, const Start& start, const GenerateOptions& options,
                       Stopwatch& watch, const Progress& progress) {
-  const LimbRings rings = find_limb_rings(start.surface, ground.model_here(),
-                                          vertices_allowed(options), progress.part(0, limbs_found));
+  const LimbRings rings =
+      find_limb_rings(start.surface, ground.model_here(), vertices_allowed(options),
+                      ground.joints_here(), progress.part(0, limbs_found));
   watch.lap("limbs");
   Result<QuadStage> stage =
       make_quads_in_budget({ground, start, options, rings}, progress.part(limbs_found, 1));
@@ -141,6 +158,8 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
   cage.gap = made->gap;
   if (options.quads) {
     cage.quads = report_of(cage.faces);
+  }
+  if (!made->parts.empty()) {
     std::vector<Index> parts = std::move(made->parts); // of both halves
     if (ground.is_half()) {
       const std::vector<Index> one = parts;

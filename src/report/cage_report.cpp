@@ -190,6 +190,7 @@ nlohmann::json to_json(const GenerateOptions& options) {
     }
   }
   j["density"] = options.density.empty() ? "even" : "given";
+  j["joints"] = options.joints.size();
   return j;
 }
 
@@ -237,6 +238,8 @@ nlohmann::json to_json(const GeneratedCage& made, const GenerateOptions& options
   j["cage"]["valid"] = true; // generate() returns no other
   if (made.quads) {
     j["quads"] = to_json(*made.quads);
+  }
+  if (made.quads || !made.limb_rings.empty()) {
     j["limb_rings"] = made.limb_rings;
   }
   j["symmetry"] = symmetry_json(made);
@@ -288,6 +291,10 @@ std::string summary(const GeneratedCage& made, const GenerateOptions& options) {
   text += made.quads ? quads_line(*made.quads) : std::string();
   if (!made.limb_rings.empty()) {
     text += fmt::format("  rings of edges round limbs: {}\n", made.limb_rings.size());
+  }
+  for (const Reason reason : {Reason::specks_ignored, Reason::openings_closed}) {
+    const std::string done = message_of(made, reason);
+    text += done.empty() ? "" : "  " + done + "\n";
   }
   if (const std::string changed = message_of(made, Reason::start_changed); !changed.empty()) {
     text += "  " + changed + "\n";

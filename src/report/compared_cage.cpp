@@ -3,6 +3,8 @@
 #include "report/cage_figures.h"
 #include "report/following.h"
 
+#include <cagewright/mesh/triangulate.h>
+
 #include <utility>
 
 namespace cagewright {
@@ -10,7 +12,7 @@ namespace {
 
 /// How well the model follows; an error only if it was cancelled.
 Status try_poses(const PolygonMesh& cage, TriangleView model, CoordinateSettings settings,
-                 const Progress& progress, ComparedCage& compared) {
+                 const BendableLimbs* limbs, const Progress& progress, ComparedCage& compared) {
   const auto passed = [](const Error& error) {
     return error.code == ErrorCode::cancelled ? Status(error) : success();
   };
@@ -19,14 +21,22 @@ Status try_poses(const PolygonMesh& cage, TriangleView model, CoordinateSettings
   if (!coordinates) {
     return passed(coordinates.error());
   }
-  Result<PoseErrors> errors = pose_errors(**coordinates, model.positions, progress.part(0.2, 0.8));
+  Result<PoseErrors> errors = pose_errors(**coordinates, model.positions, progress.part(0.2, 0.6));
   if (!errors) {
     return passed(errors.error());
   }
   const Result<UnseenShare> unseen =
-      unseen_share(cage, **coordinates, model.positions, progress.part(0.8, 1));
+      unseen_share(cage, **coordinates, model.positions, progress.part(0.6, 0.7));
   if (!unseen) {
     return passed(unseen.error());
+  }
+  if (limbs != nullptr) {
+    Result<std::vector<LimbBendError>> bends = limb_bend_errors(
+        **coordinates, to_triangle_mesh(cage), model.positions, *limbs, progress.part(0.7, 1));
+    if (!bends) {
+      return passed(bends.error());
+    }
+    compared.bends = *std::move(bends);
   }
   for (std::size_t k = 0; k < standard_poses.size(); ++k) {
     compared.posed[k] = deformed_figures(model, errors->followed[k]);
@@ -41,7 +51,8 @@ Status try_poses(const PolygonMesh& cage, TriangleView model, CoordinateSettings
 
 Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& cage,
                                   TriangleView model, const ModelVolume& volume,
-                                  const CoordinateSettings* poses, const Progress& progress) {
+                                  const CoordinateSettings* poses, const BendableLimbs* limbs,
+                                  const Progress& progress) {
   ComparedCage compared;
   compared.name = name;
   compared.faces = cage.face_count();
@@ -56,7 +67,8 @@ Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& ca
   compared.validity = std::move(*report);
   compared.metrics = measure_cage(cage, model, volume);
   if (poses != nullptr) {
-    if (const Status status = try_poses(cage, model, *poses, progress.part(0.6, 1), compared);
+    if (const Status status =
+            try_poses(cage, model, *poses, limbs, progress.part(0.6, 1), compared);
         !status) {
       return status.error();
     }
@@ -64,7 +76,7 @@ Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& ca
   return compared;
 }
 
-nlohmann::json json_of(const ComparedCage& cage) {
+nlohmann::json json_of(const ComparedCage& cage, const BendableLimbs* limbs) {
   nlohmann::json json = figures_as_json(cage.metrics);
   json["file"] = cage.name;
   json["valid"] = cage.validity.valid();
@@ -89,6 +101,9 @@ nlohmann::json json_of(const ComparedCage& cage) {
       json["poses"][std::string(name_of(pose))].update(
           json_of(cage.posed[static_cast<std::size_t>(pose)]));
     }
+  }
+  if (cage.poses && limbs != nullptr) {
+    json["poses"]["limbs"] = json_of(*limbs, cage.bends);
   }
   return json;
 }

@@ -2,6 +2,7 @@
 /// What is said of a cage when it is compared with others.
 #pragma once
 
+#include "report/limb_bends.h"
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
@@ -19,6 +20,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace cagewright {
 
@@ -33,6 +35,7 @@ struct ComparedCage {
   std::optional<PoseErrors> poses; ///< none: not asked for, or the cage cannot carry a model
   std::array<DeformedFigures, standard_poses.size()> posed; ///< with `poses`
   UnseenShare unseen;                                       ///< with `poses`
+  std::vector<LimbBendError> bends;                         ///< with `poses`, by limb
 };
 
 /// Judges and measures a cage, and tries how well it bends and twists its model.
@@ -40,11 +43,14 @@ struct ComparedCage {
 /// \param name    what it is called in the result
 /// \param volume  of the model
 /// \param poses   the coordinates by which the model follows; null: leave out how well
+/// \param limbs   of the model, to be bent with `poses`; null: no limb is bent
 /// Errors: cancelled.
 Result<ComparedCage> compare_cage(const std::string& name, const PolygonMesh& cage,
                                   TriangleView model, const ModelVolume& volume,
-                                  const CoordinateSettings* poses, const Progress& progress);
+                                  const CoordinateSettings* poses, const BendableLimbs* limbs,
+                                  const Progress& progress);
 
-nlohmann::json json_of(const ComparedCage& cage);
+/// \param limbs  as in compare_cage()
+nlohmann::json json_of(const ComparedCage& cage, const BendableLimbs* limbs);
 
 } // namespace cagewright

@@ -41,6 +41,16 @@ nlohmann::json json_of(const ValidityReport& report, const JudgedFiles& files) {
   return json;
 }
 
+void name_model_vertices(ValidityReport& report, std::span<const Index> vertex_of) {
+  for (Violation& violation : report.violations) {
+    const bool is_of_model = violation.kind == ViolationKind::vertex_outside ||
+                             violation.kind == ViolationKind::vertex_on_cage;
+    if (is_of_model && !vertex_of.empty()) {
+      violation.elements[0] = vertex_of[violation.elements[0]];
+    }
+  }
+}
+
 void name_model_faces(ValidityReport& report, std::span<const Index> face_of) {
   for (Violation& violation : report.violations) {
     if (violation.kind == ViolationKind::face_contact && !face_of.empty()) {

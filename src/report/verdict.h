@@ -20,4 +20,7 @@ nlohmann::json json_of(const ValidityReport& report, const JudgedFiles& files);
 /// \param face_of  for each triangle the face it was cut from; none: they are the faces
 void name_model_faces(ValidityReport& report, std::span<const Index> face_of);
 
+/// The same for vertices of the model, where a part of it was judged.
+void name_model_vertices(ValidityReport& report, std::span<const Index> vertex_of);
+
 } // namespace cagewright

@@ -132,6 +132,10 @@ static void judges(const cw_mesh_view* model, const cw_cage* cage) {
   EXPECT(strstr(cw_verdict_report(verdict), "\"clearance\"") != NULL);
   cw_verdict_free(verdict);
 
+  SUCCEEDS(cw_check(model, &faces, CW_CHECK_IGNORE_SPECKS, 20, NULL, &verdict, &error));
+  EXPECT(cw_verdict_is_valid(verdict)); /* the model has none */
+  cw_verdict_free(verdict);
+
   SUCCEEDS(cw_check(&faces, model, 0, 3, NULL, &verdict, &error)); /* the other way round */
   EXPECT(!cw_verdict_is_valid(verdict));
   EXPECT(strstr(cw_verdict_report(verdict), "\"vertex_outside\"") != NULL);
@@ -258,6 +262,12 @@ static void refuses_options(const cw_mesh_view* model) {
   SUCCEEDS(cw_options_set_density(options, &density, &error));
   cw_cage* cage = NULL;
   FAILS(cw_generate(model, options, NULL, &cage, &error), CW_MISMATCH, "2 weights");
+  const double numbers[] = {0, 0, 0, 1, 0, 0};
+  const cw_array joints = {numbers, CW_FLOAT64, 2, 3, 0, 0};
+  const cw_array along = {numbers, CW_FLOAT64, 1, 3, 0, 0};
+  FAILS(cw_options_set_joints(options, &joints, &along, &error), CW_MISMATCH, "2 joints");
+  SUCCEEDS(cw_options_set_joints(options, &joints, &joints, &error));
+  SUCCEEDS(cw_options_set_joints(options, &joints, NULL, &error));
   cw_options_free(options);
 }
 

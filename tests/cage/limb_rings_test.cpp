@@ -71,6 +71,55 @@ TEST(LimbRings, GoRoundTheArmsOfAFigureWhereTheyBegin) {
   EXPECT_LT(sides, 0); // one on each side
 }
 
+Vec3 middle_of(std::span<const Index> ring, std::span<const Vec3> positions) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index v : ring) {
+    sum += positions[v];
+  }
+  return sum / static_cast<double>(ring.size());
+}
+
+TEST(RingsAtJoints, GoRoundTheLimbWhereTheyAreAskedFor) {
+  const TriangleMesh start = fine_cage(figure());
+  const std::vector<LimbJoint> joints = {{{1.8, 0, 0}, Vec3::Zero()},
+                                         {{-1.7, 0.05, 0}, Vec3(-1, 0.2, 0)},
+                                         {{0, 5, 0}, Vec3::Zero()}}; // beside the figure
+  const LimbRings rings = rings_at_joints(start, joints, 60);
+  EXPECT_EQ(rings.count, 2);
+  for (const EdgeChain& ring : rings_of(start, rings.parts)) {
+    const Vec3 middle = middle_of(ring.vertices, start.positions);
+    EXPECT_NEAR(std::abs(middle.x()), 1.75, 0.2);
+    EXPECT_NEAR(middle.y(), 0, 0.1);
+  }
+}
+
+TEST(RingsAtJoints, AreInCagesOfTriangles) {
+  const std::vector<LimbJoint> joints = {{{1.9, 0, 0}, Vec3::Zero()}, {{-1.9, 0, 0}, Vec3::Zero()}};
+  GenerateOptions options;
+  options.vertices = 60;
+  options.rounds = 2;
+  options.joints = joints;
+  const Result<GeneratedCage> made = generate(figure(), options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_LE(made->faces.positions.size(), 60U);
+  EXPECT_EQ(made->limb_rings.size(), 2U);
+  for (const std::vector<Index>& ring : made->limb_rings) {
+    EXPECT_NEAR(std::abs(middle_of(ring, made->faces.positions).x()), 1.9, 0.2);
+  }
+}
+
+TEST(Limbs, OfAFigureAreItsArms) {
+  const TriangleMesh start = fine_cage(figure());
+  const std::vector<Limb> limbs = find_limbs(start, limb_cuts(figure()), 50);
+  ASSERT_EQ(limbs.size(), 2U);
+  for (const Limb& limb : limbs) {
+    EXPECT_GT(limb.joint.along.x() * limb.joint.position.x(), 0) << "outward";
+    EXPECT_NEAR(limb.joint.along.norm(), 1, 1e-12);
+    EXPECT_NEAR(limb.width, 0.5, 0.35);
+    EXPECT_LT(limb.faces.size(), start.triangles.size() / 3);
+  }
+}
+
 TEST(LimbRings, LieInTheirBands) {
   const TriangleMesh model = figure();
   const TriangleMesh start = fine_cage(model);

@@ -365,6 +365,40 @@ class Compare(InAFolder):
         self.assertFalse(cage["valid"])
         self.assertLess(cage["poses"]["bend"]["max_error"], 1e-9)
 
+    def test_bends_limbs_at_joints(self):
+        def ellipsoid(middle, radii, first):  # nearly: a torus almost without a hole
+            vertices, faces = torus(tube=0.999, first=first)
+            return [tuple(m + r * x / s for m, r, x, s in zip(middle, radii, v, (2, 2, 1))) for v in vertices], faces
+
+        model = self.file("figure.obj", obj(ellipsoid((0, 0, 0), (1, 1.6, 0.7), 1),
+                                            ellipsoid((1.8, 0, 0), (1.4, 0.25, 0.25), 513)))
+        joints = self.file("joints.txt", "# an elbow, a skeleton: shoulder, elbow, hand\n1 0 0 0\n2 0 0 1\n3 0 0 2\n")
+        table = self.folder / "table.json"
+        told = run("compare", model, model, "--joints", joints, "--json", table)
+        self.assertEqual(told.returncode, DONE, told.stderr)
+        self.assertIn("in four directions each: 1", told.stdout)
+        bent = json.loads(table.read_text())["cages"][0]["poses"]["limbs"]
+        limb, = bent["limbs"]
+        self.assertAlmostEqual(limb["joint"][0], 2, delta=0.2)
+        self.assertGreater(limb["along"][0], 0.9)
+        self.assertLess(limb["max_error"], 1e-6)  # the model is a perfect handle of its own
+        self.assertLess(limb["max_drag"], 1e-6)
+        cage = self.folder / "cage.obj"
+        made = run("generate", model, "-o", cage, "--vertices", 50, "--joints", joints, "--json", self.folder / "r.json")
+        self.assertEqual(made.returncode, DONE, made.stderr)
+        ring, = json.loads((self.folder / "r.json").read_text())["limb_rings"]
+        points = vertices_of(cage)
+        self.assertAlmostEqual(sum(points[v][0] for v in ring) / len(ring), 2, delta=0.25)
+        run("compare", model, cage, "--json", table)
+        bent = json.loads(table.read_text())["cages"][0]["poses"]["limbs"]
+        self.assertGreater(bent["limbs"][0]["mean_error"], 0)
+        self.assertAlmostEqual(bent["reached_degrees"], 45, delta=8)
+        self.assertLess(bent["drag"], 0.01)
+        for bad in ("1 2\n", "", "0 0 0 1\n"):
+            refused = run("compare", model, cage, "--joints", self.file("bad.txt", bad))
+            self.assertEqual(refused.returncode, BAD_INPUT, refused.stdout)
+            self.assertIn("bad.txt", refused.stderr)
+
     def test_refuses_what_it_cannot_read(self):
         for arguments in ((self.model,), (self.model, self.folder / "none.obj"), (self.folder / "none.obj", self.model),
                           (self.model, self.file("bad.obj", "v 0 0 nan\n"))):

@@ -86,6 +86,23 @@ class Objects(InFolder):
             told = self.run_program("info", "all.glb", "--only", name, code=2)
             self.assertIn(f"no group '{name}'; it has Body#1, Body#2, Cage#1, Cage#2", told)
 
+    def test_specks_are_told_and_ignored_by_generate_and_its_judge(self):
+        specked = cage(1) + "v 1e6 1e6 1e6\n" + "v 9000 0 0\nv 9000.1 0 0\nv 9000 0.1 0\nf 10 11 12\n"
+        self.write("specked.obj", specked)
+        generate = ("generate", "specked.obj", "-o", "out.obj", "--vertices", "20", "--json", "out.json")
+        told = self.run_program(*generate, "--method", "boxes", "--depth", "0")
+        self.assertIn("2 tiny pieces far from the rest are enclosed, too", told)
+        self.assertIn("leave them out with --ignore-specks", told)
+        self.assertNotIn("enclosed, too", self.run_program(*generate, "--ignore-specks"))
+        report = json.loads((self.folder / "out.json").read_text())
+        self.assertEqual(report["options"]["ignore-specks"], "on")
+        self.assertEqual([remark["reason"] for remark in report["remarks"]], ["specks_ignored"])
+        self.assertIn("--ignore-specks", self.run_program("check", "specked.obj", "out.obj", code=1))
+        self.assertTrue(self.run_program("check", "specked.obj", "out.obj", "--ignore-specks").startswith("valid"))
+        self.assertIn("yes", self.run_program("compare", "specked.obj", "out.obj", "--ignore-specks"))
+        self.assertIn("8 model vertices bound", self.run_program("bind", "specked.obj", "out.obj", "-o", "out.npz",
+                                                                 "--ignore-specks"))
+
     def test_model_and_cage_may_be_objects_of_one_file(self):
         told = self.run_program("check", "all.glb", "all.glb", "--only", "Body#1", "--cage-object", "Cage#1")
         self.assertIn("valid", told)

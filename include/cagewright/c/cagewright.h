@@ -205,6 +205,12 @@ CW_API cw_code cw_options_set(cw_options* options, const char* name, const char*
 CW_API cw_code cw_options_set_density(cw_options* options, const cw_array* weights,
                                       cw_error** error);
 
+/// Where limbs bend: a ring of edges goes round the limb at each of J points (J x 3).
+/// \param along  J x 3, towards where each limb goes on, of any length, zero: not known; or NULL
+/// The numbers are copied.
+CW_API cw_code cw_options_set_joints(cw_options* options, const cw_array* joints,
+                                     const cw_array* along, cw_error** error);
+
 /// A cage of one's own: its vertices are moved until it is valid and tight, its faces and the order
 /// of its vertices stay. Of the other options only the clearance and the density are heeded then.
 /// The numbers are copied.
@@ -239,8 +245,10 @@ CW_API int cw_verdict_is_valid(const cw_verdict* verdict);
 CW_API const char* cw_verdict_report(const cw_verdict* verdict);
 
 typedef enum cw_check_flags {
-  CW_CHECK_PIECES = 1,      ///< accept several closed pieces
-  CW_CHECK_INNER_SHELLS = 2 ///< accept closed pieces within others, oriented inward
+  CW_CHECK_PIECES = 1,       ///< accept several closed pieces
+  CW_CHECK_INNER_SHELLS = 2, ///< accept closed pieces within others, oriented inward
+  CW_CHECK_IGNORE_SPECKS = 4 ///< judge for the model without tiny pieces far from the rest, and
+                             ///< without vertices that no face uses: as with "ignore-specks"
 } cw_check_flags;
 
 /// Judges a cage, exactly. Vertices at equal positions are judged merged.

@@ -2,6 +2,7 @@
 /// What can be asked of a cage.
 #pragma once
 
+#include <cagewright/core/geometry.h>
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/slicing/slicing_rule.h>
 
@@ -32,6 +33,12 @@ enum class Pieces {
   apart,    ///< a closed surface for each group of pieces that are apart
 };
 
+/// A place where a limb bends: an elbow, a knee.
+struct LimbJoint {
+  Vec3 position = Vec3::Zero(); ///< within the limb
+  Vec3 along = Vec3::Zero();    ///< to where the limb goes on, of any length; zero: not known
+};
+
 /// What generate() is asked for. The defaults make the best cage of 100 vertices.
 ///
 /// Lengths are fractions of the diagonal of the model's bounding box.
@@ -50,10 +57,21 @@ struct GenerateOptions {
   bool quads = false;       ///< quads where they can be; the cage is valid along both diagonals
   Symmetry symmetry = Symmetry::automatic;
   Pieces pieces = Pieces::together; ///< heeded by every method
+  /// Leaves out tiny pieces far from the rest, and vertices that no face uses: see find_specks().
+  /// The cage is made and judged for what remains; heeded by every method, and with `start`.
+  bool ignore_specks = false;
+  /// Closes openings of the model, so that a dome, a vase or a pipe gets one solid cage instead of
+  /// a thin one that goes in and out. `closing` says how wide; 0: all. Figures are those of the
+  /// model with its openings closed. Heeded by every method.
+  bool solid = false;
   /// Where the cage is to be finer: one weight above 0 for each vertex of the model, or empty:
   /// even. Four times the weight makes edges half as long; ratios beyond 100 count as 100. The view
   /// must live as long as the call. See density.h.
   std::span<const double> density = {};
+  /// Where limbs bend: a ring of edges goes round the limb there, of the budget what these rings
+  /// need, largest limbs first. Joints about which no ring can go are left out. The view must live
+  /// as long as the call.
+  std::span<const LimbJoint> joints = {};
   int rounds = 6; ///< how often, at most, vertices are moved to where they pay; fewer is quicker
 
   /// A cage of one's own, or null. If given its vertices are moved until it is valid and tight, by
@@ -64,7 +82,8 @@ struct GenerateOptions {
 
   // Of the envelope.
 
-  double closing = 0;          ///< holes and gaps narrower than twice this are filled, 0 to 0.5
+  double closing = 0;          ///< holes and gaps narrower than twice this are filled, 0 to 0.5;
+                               ///< with `solid` openings that are no wider are closed, 0: all
   int envelope_resolution = 0; ///< voxels along the model's diagonal, 8 to 512; 0: chosen
 
   // Of the boxes.

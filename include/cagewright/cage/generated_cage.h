@@ -36,6 +36,9 @@ enum class Reason {
   not_mirrored,       ///< the cage is not its own mirror image
   pieces_joined,      ///< groups of pieces that are apart share a closed surface
   start_changed,      ///< of the cage that was given to start from more than places was changed
+  specks_enclosed,    ///< tiny pieces far from the rest make the cage large: see find_specks()
+  specks_ignored,     ///< such pieces are not enclosed, as was asked for
+  openings_closed,    ///< of an open model, as was asked for: how many
 };
 
 /// As in JSON: "budget_not_reached".
@@ -81,7 +84,8 @@ struct GeneratedCage {
   double clearance = 0;            ///< that was heeded: no more than asked for; 0: Method::boxes
   std::optional<double> gap;       ///< with max_gap: no point is farther from the model: proved
   std::optional<QuadReport> quads; ///< if there are any
-  /// With quads: closed loops of edges round limbs, where they begin or bend: vertices in order.
+  /// With quads, or where joints were given: closed loops of edges round limbs, where they begin or
+  /// bend: vertices in order.
   std::vector<std::vector<Index>> limb_rings;
   std::optional<MirrorPairing> mirror; ///< of a cage that is its own mirror image
 
