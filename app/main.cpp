@@ -1,7 +1,7 @@
+#include "app/application.h"
 #include "app/main_window.h"
 #include <cagewright/version.h>
 
-#include <QApplication>
 #include <QCommandLineParser>
 #include <QStandardPaths>
 #include <QSurfaceFormat>
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   format.setDepthBufferSize(24);
   QSurfaceFormat::setDefaultFormat(format);
 
-  QApplication application(argc, argv);
+  cagewright::app::Application application(argc, argv);
   QCoreApplication::setOrganizationName("Cagewright");
   QCoreApplication::setApplicationName("Cagewright");
   QCoreApplication::setApplicationVersion(CAGEWRIGHT_VERSION);

@@ -3,6 +3,7 @@
 #include "app/document/binding.h"
 #include "app/document/time_line.h"
 #include "app/edit/repair_cage.h"
+#include "app/jobs/freed_elsewhere.h"
 #include "app/jobs/work.h"
 #include <cagewright/io/write_mesh.h>
 
@@ -218,7 +219,7 @@ void Session::open(const fs::path& path, const fs::path& cage, Then then) {
       mesh = *read;
     }
     return Job::Apply([this, path, then, model = *model, mesh] {
-      document_.set_model(model);
+      document_.set_model(freed_elsewhere(model));
       if (mesh) {
         editor_.replace_cage(mesh, nullptr, tr("Load Cage"));
       }
@@ -267,7 +268,7 @@ void Session::add_model(const fs::path& path) {
             state.density = std::make_shared<const std::vector<float>>(std::move(density));
           }
           state.stages.reset();
-          document_.set_model(model);
+          document_.set_model(freed_elsewhere(model));
           document_.set_state(state);
           editor_.undo_stack().clear();
           modified_ = true;
@@ -374,7 +375,7 @@ void Session::open_project(const fs::path& path, const fs::path& model_path, boo
 
 void Session::restore(const Project& project, std::shared_ptr<const Model> model,
                       std::shared_ptr<const Binding> binding) {
-  document_.set_model(std::move(model));
+  document_.set_model(freed_elsewhere(std::move(model)));
   State state = project.state;
   if (state.density && (!document_.has_model() ||
                         state.density->size() != document_.model()->mesh.positions.size())) {

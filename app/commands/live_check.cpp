@@ -14,7 +14,7 @@ void LiveCheck::begin() {
     if (model_) {
       // The hierarchy is the model's own, and lives as long as it.
       watched_ = std::make_shared<const WatchedModel>(
-          model_->view(), std::shared_ptr<const TriangleBvh>(model_, &model_->bvh));
+          model_->watched, std::shared_ptr<const TriangleBvh>(model_, &model_->bvh));
     }
   }
   watch_.emplace(document_.cage(), watched_);

@@ -80,7 +80,7 @@ double Document::diagonal() const {
 }
 
 Box3 Document::bounds() const {
-  Box3 box = bounding_box(model_positions());
+  Box3 box = deformed_ ? deformed_->box : model_ ? model_->box : Box3();
   box.extend(bounding_box(shown_cage_positions()));
   return box;
 }

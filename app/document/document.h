@@ -25,6 +25,7 @@ namespace cagewright::app {
 struct DeformedModel {
   std::vector<Vec3> positions; ///< V
   std::vector<Vec3> normals;   ///< V, unit
+  Box3 box;                    ///< of the positions
 };
 
 /// What is known about the cage's validity.

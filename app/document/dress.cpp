@@ -273,7 +273,8 @@ std::optional<FileDress> read_dress(const std::filesystem::path& path, MeshAttri
 std::shared_ptr<const Dress> make_dress(std::span<const DressedPart> parts,
                                         const Triangulation& cut,
                                         std::span<const std::array<float, 4>> colors,
-                                        std::span<const Triangle> coarse) {
+                                        std::span<const Triangle> coarse,
+                                        std::span<const std::array<Index, 2>> edges) {
   std::vector<Material> materials;
   std::vector<Index> first_material;
   for (const DressedPart& part : parts) {
@@ -352,12 +353,24 @@ std::shared_ptr<const Dress> make_dress(std::span<const DressedPart> parts,
     first_face = end;
   }
   // From afar one of a vertex's places in the texture is as good as another.
-  std::unordered_map<Index, Index> any;
-  for (Index d = 0; d < dress->vertex_of.size(); ++d) {
-    any.emplace(dress->vertex_of[d], d);
+  Index end = 0; // of the vertices that triangles use
+  for (const Index v : dress->vertex_of) {
+    end = std::max(end, v + 1);
   }
+  std::vector<Index> any(end, 0);
+  for (auto d = static_cast<Index>(dress->vertex_of.size()); d-- > 0;) {
+    any[dress->vertex_of[d]] = d;
+  }
+  const auto is_drawn = [&](Index v) { return v < end && dress->vertex_of[any[v]] == v; };
   for (const Triangle& t : coarse) {
-    dress->coarse.push_back({any.at(t[0]), any.at(t[1]), any.at(t[2])});
+    if (is_drawn(t[0]) && is_drawn(t[1]) && is_drawn(t[2])) {
+      dress->coarse.push_back({any[t[0]], any[t[1]], any[t[2]]});
+    }
+  }
+  for (const auto& [a, b] : edges) {
+    if (is_drawn(a) && is_drawn(b)) {
+      dress->edges.push_back({any[a], any[b]});
+    }
   }
   return dress;
 }

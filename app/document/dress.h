@@ -39,6 +39,7 @@ struct Dress {
   std::vector<std::array<std::uint8_t, 4>> colors; ///< D
   std::vector<Triangle> triangles;                 ///< the model's, in their order
   std::vector<Triangle> coarse;                    ///< the model's coarse ones
+  std::vector<std::array<Index, 2>> edges;         ///< the model's
   QImage atlas;                                    ///< all textures in one; its first row is below
 };
 
@@ -55,11 +56,12 @@ struct DressedPart {
 };
 
 /// \param cut    of all parts, one after the other
-/// \param coarse over the model's vertices, too
+/// \param coarse, edges  over the model's vertices, too
 /// \param colors V of the model's vertices, or none: where no material says otherwise
 std::shared_ptr<const Dress> make_dress(std::span<const DressedPart> parts,
                                         const Triangulation& cut,
                                         std::span<const std::array<float, 4>> colors,
-                                        std::span<const Triangle> coarse);
+                                        std::span<const Triangle> coarse,
+                                        std::span<const std::array<Index, 2>> edges);
 
 } // namespace cagewright::app

@@ -1,6 +1,7 @@
 #include "app/document/model.h"
 
 #include "app/document/coarse_triangles.h"
+#include "app/document/wire_edges.h"
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/weights_file.h>
 #include <cagewright/mesh/measures.h>
@@ -58,7 +59,7 @@ std::shared_ptr<const Dress> dress_of(const Model& model, const Triangulation& c
     parts.push_back({part.origin.dress.get(), &model.mesh_of(part), part.first});
   }
   return std::ranges::any_of(parts, [](const DressedPart& p) { return p.dress != nullptr; })
-             ? make_dress(parts, cut, model.mesh.colors, model.coarse)
+             ? make_dress(parts, cut, model.mesh.colors, model.coarse, model.edges)
              : nullptr;
 }
 
@@ -82,6 +83,7 @@ Result<std::shared_ptr<const Model>> prepared(std::vector<ModelPart> parts,
   if (model->triangles.size() > large) {
     model->coarse = coarse_triangles(model->view(), drawn_at_once);
   }
+  model->edges = wire_edges(model->mesh);
   model->dress = dress_of(*model, cut);
   progress(0.2, "normals");
   const NormalField normals(model->mesh, smooth_normals(model->mesh));
@@ -91,6 +93,7 @@ Result<std::shared_ptr<const Model>> prepared(std::vector<ModelPart> parts,
   }
   progress(0.5, "hierarchy of boxes");
   model->bvh = TriangleBvh(model->view());
+  model->watched = WatchedPoints(model->view());
   model->checksum = checksum(model->mesh.positions);
   if (progress.cancelled()) {
     return Error::cancelled();

@@ -3,12 +3,14 @@
 #pragma once
 
 #include "app/document/dress.h"
+#include "app/edit/cage_watch.h"
 #include "spatial/bvh.h"
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
 #include <cagewright/io/model_file.h>
 #include <cagewright/mesh/polygon_mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -33,19 +35,21 @@ struct ModelPart {
 };
 
 struct Model {
-  PolygonMesh mesh;                   ///< all parts, one after the other
-  std::vector<ModelPart> parts;       ///< at least one
-  std::vector<Triangle> triangles;    ///< T: the faces, cut
-  std::vector<Triangle> coarse;       ///< fewer, of the same vertices, to draw while a large model
-                                      ///< moves: see coarse_triangles(); none for small models
-  std::vector<Vec3> normals;          ///< V smooth unit normals
-  std::shared_ptr<const Dress> dress; ///< how it is drawn in its own colors; none: as it is
-  TriangleBvh bvh;                    ///< over the triangles
-  Box3 box;                           ///< of all vertices
-  double diagonal = 1;                ///< of that box; the unit of all tolerances
-  std::filesystem::path path;         ///< of the first part; empty for a mesh in memory
-  std::vector<FileNote> notes;        ///< of all parts
-  std::uint64_t checksum = 0;         ///< of the positions
+  PolygonMesh mesh;                ///< all parts, one after the other
+  std::vector<ModelPart> parts;    ///< at least one
+  std::vector<Triangle> triangles; ///< T: the faces, cut
+  std::vector<Triangle> coarse;    ///< fewer, of the same vertices, to draw while a large model
+                                   ///< moves: see coarse_triangles(); none for small models
+  std::vector<std::array<Index, 2>> edges; ///< see wire_edges()
+  std::vector<Vec3> normals;               ///< V smooth unit normals
+  std::shared_ptr<const Dress> dress;      ///< how it is drawn in its own colors; none: as it is
+  WatchedPoints watched;                   ///< for the check while the cage is dragged
+  TriangleBvh bvh;                         ///< over the triangles
+  Box3 box;                                ///< of all vertices
+  double diagonal = 1;                     ///< of that box; the unit of all tolerances
+  std::filesystem::path path;              ///< of the first part; empty for a mesh in memory
+  std::vector<FileNote> notes;             ///< of all parts
+  std::uint64_t checksum = 0;              ///< of the positions
 
   [[nodiscard]] const PolygonMesh& mesh_of(const ModelPart& part) const {
     return parts.size() == 1 ? mesh : part.mesh;

@@ -61,11 +61,10 @@ private:
 
 // ---------------------------------------------------------------- the model
 
-WatchedModel::WatchedModel(TriangleView model, std::shared_ptr<const TriangleBvh> hierarchy)
-    : bvh(std::move(hierarchy)) {
-  if (!bvh) {
-    bvh = std::make_shared<const TriangleBvh>(model);
-  }
+WatchedModel::WatchedModel(TriangleView model)
+    : WatchedModel(WatchedPoints(model), std::make_shared<const TriangleBvh>(model)) {}
+
+WatchedPoints::WatchedPoints(TriangleView model) {
   diagonal = cagewright::diagonal(model.positions);
   DisjointSets sets(model.positions.size());
   for (const Triangle& t : model.triangles) {

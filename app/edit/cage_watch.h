@@ -9,19 +9,29 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace cagewright::app {
 
-/// What a watch needs of a model. Made once for each model, shared, never changed.
-struct WatchedModel {
-  /// \param bvh  over the model's triangles; made here if there is none
-  explicit WatchedModel(TriangleView model, std::shared_ptr<const TriangleBvh> bvh = nullptr);
+/// The points of a model by which it is known whether it is inside. O(V + T).
+struct WatchedPoints {
+  WatchedPoints() = default;
+  explicit WatchedPoints(TriangleView model);
 
-  std::shared_ptr<const TriangleBvh> bvh;
   std::vector<Vec3> points; ///< a vertex of each part that hangs together, and all stray ones
   bool is_finite = true;
   double diagonal = 0;
+};
+
+/// What a watch needs of a model. Made once for each model, shared, never changed.
+struct WatchedModel : WatchedPoints {
+  explicit WatchedModel(TriangleView model);
+  /// \param bvh  over the model's triangles
+  WatchedModel(WatchedPoints points, std::shared_ptr<const TriangleBvh> bvh)
+      : WatchedPoints(std::move(points)), bvh(std::move(bvh)) {}
+
+  std::shared_ptr<const TriangleBvh> bvh;
 };
 
 struct WatchOptions {

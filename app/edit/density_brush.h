@@ -18,10 +18,9 @@ struct Dab {
   bool erases = false;         ///< draws towards 0 instead, by `amount`
 };
 
-/// Adds a dab to a density in [-1, 1], one number for each of V vertices; it stays in that range.
-/// \param normals  V, unit
-/// Cost: O(V), on all cores.
-void add_dab(const Dab& dab, std::span<const Vec3> positions, std::span<const Vec3> normals,
-             std::vector<float>& density);
+/// Adds dabs, one after the other, to a density in [-1, 1], one number for each of V vertices; it
+/// stays in that range. \param normals  V, unit Cost: O(V), on all cores.
+void paint_dabs(std::span<const Dab> dabs, std::span<const Vec3> positions,
+                std::span<const Vec3> normals, std::vector<float>& density);
 
 } // namespace cagewright::app

@@ -2,6 +2,7 @@
 
 #include "app/document/binding.h"
 #include "app/document/selected_vertices.h"
+#include <cagewright/mesh/measures.h>
 
 #include <atomic>
 #include <chrono>
@@ -99,6 +100,7 @@ DeformLoop::Answer DeformLoop::answer(const Request& request) {
     made.deformed = free_buffer();
     made.deformed->positions.assign(deformer.positions().begin(), deformer.positions().end());
     made.deformed->normals.assign(deformer.normals().begin(), deformer.normals().end());
+    made.deformed->box = bounding_box(made.deformed->positions);
     made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   if (request.weights) {

@@ -2,6 +2,7 @@
 
 #include "app/document/binding.h"
 #include "app/document/time_line.h"
+#include "app/jobs/freed_elsewhere.h"
 #include "cage/box_cage.h"
 #include <cagewright/cage/density.h>
 #include <cagewright/cage/generate_for_polygons.h>
@@ -198,7 +199,8 @@ Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const Poly
   if (!prepared) {
     return prepared.error();
   }
-  return std::make_shared<const Binding>(std::move(*deformer), coordinates, *std::move(prepared));
+  return freed_elsewhere(
+      std::make_shared<const Binding>(std::move(*deformer), coordinates, *std::move(prepared)));
 }
 
 Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,

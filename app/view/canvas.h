@@ -10,9 +10,11 @@
 #include <cagewright/render/palette.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace cagewright::app {
@@ -76,8 +78,7 @@ struct CanvasView {
   bool wireframe = false;
   bool coarse = false; ///< the coarse triangles, if there are any, and no wireframe
   bool keep = false;   ///< the framebuffer has GL_DEPTH24_STENCIL8: the model's picture may be kept
-  bool refine = false; ///< nothing moves: make the kept picture finer, see can_refine()
-  bool patient = false;               ///< refine however long it takes
+  bool patient = false;               ///< all at once, however long it takes: see improve()
   double model_opacity_behind = 0.16; ///< of marks that the model hides
   Rgb background_top = {0.93F, 0.94F, 0.95F};
   Rgb background_bottom = {0.80F, 0.82F, 0.85F};
@@ -102,6 +103,8 @@ public:
   /// \param coarse  triangles of the same vertices to draw instead while `CanvasView::coarse`
   void set_model(std::span<const Vec3> positions, std::span<const Vec3> normals,
                  std::span<const Triangle> triangles, std::span<const Triangle> coarse = {});
+  /// Lines for CanvasView::wireframe, between vertices of the model that was set last.
+  void set_model_edges(std::span<const std::array<Index, 2>> edges);
   /// The same triangles elsewhere.
   void move_model(std::span<const Vec3> positions, std::span<const Vec3> normals);
   /// V colours instead of one; empty: one.
@@ -118,30 +121,46 @@ public:
   /// Opaque faces that are drawn with the model.
   void set_solids(std::vector<FaceMark> solids);
 
-  /// Draws to the framebuffer that is bound. The picture of a large model is kept, so that marks
-  /// alone can change at little cost.
+  /// Draws to the framebuffer that is bound. The picture of the model is kept, so that marks alone
+  /// can change at little cost. Where a picture with all triangles takes long, the one with the
+  /// coarse ones is drawn instead, and improve() makes the other.
   void draw(const CanvasView& view, const Marks& marks, const Overlay& overlay);
 
-  /// Whether the picture that was drawn last would get finer, if it were drawn again with
-  /// `CanvasView::refine` and nothing else changed. Each time costs about one picture of the model.
+  /// Whether improve() has anything to do: all triangles, where coarse ones were drawn for them;
+  /// then smooth outlines, and shade in corners.
   /// \param patient  however long it takes
-  [[nodiscard]] bool can_refine(bool patient = false) const;
+  [[nodiscard]] bool can_improve(bool patient = false) const;
+  /// Makes a piece of a better picture of what was drawn last: so much as takes a few hundredths of
+  /// a second, unless `patient`. Binds another framebuffer.
+  /// \returns whether there is a better picture now: draw it, the same view again
+  bool improve(bool patient = false);
 
-  /// How long the last picture of a large model took, with all triangles; 0 for others.
-  [[nodiscard]] double model_seconds() const { return model_seconds_; }
+  /// Whether a picture of the model with all triangles takes long: as a large one's does, until it
+  /// is known.
+  [[nodiscard]] bool is_slow() const;
+  /// Whether the picture that was drawn last has all triangles.
+  [[nodiscard]] bool shows_all() const;
+  /// The most triangles and edges of the model that were drawn at once since the last call.
+  std::size_t take_most_at_once() { return std::exchange(most_at_once_, 0); }
 
 private:
   struct Gl;
+  struct Pieces;
   explicit Canvas(std::unique_ptr<Gl> gl);
   void draw_model(const CanvasView& view);
+  bool draw_piece(const CanvasView& view, Pieces& pieces, std::size_t most);
+  bool draw_timed_piece(const CanvasView& view, Pieces& pieces, bool patient);
+  [[nodiscard]] bool is_kept(const CanvasView& view) const;
+  bool keep_picture(const CanvasView& view);
   void draw_or_copy_model(const CanvasView& view);
-  void refine(const CanvasView& view);
+  bool complete(bool patient);
+  bool refine(bool patient);
   [[nodiscard]] MarkView in_space(const CanvasView& view) const;
 
   std::unique_ptr<Gl> gl_;
   Vec3 center_ = Vec3::Zero();
   double scale_ = 1;
-  double model_seconds_ = 0;
+  std::size_t most_at_once_ = 0;
 };
 
 } // namespace cagewright::app

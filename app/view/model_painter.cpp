@@ -42,10 +42,9 @@ Result<ModelPainter> ModelPainter::create() {
 
 void ModelPainter::set_triangles(std::span<const Triangle> triangles,
                                  std::span<const Triangle> coarse) {
-  triangles_.assign(triangles.begin(), triangles.end());
-  corners_ = static_cast<GLsizei>(3 * triangles.size());
-  coarse_corners_ = static_cast<GLsizei>(3 * coarse.size());
-  has_edges_ = false;
+  triangles_ = triangles.size();
+  coarse_ = coarse.size();
+  edge_count_ = 0;
   has_colors_ = false;
   glBindVertexArray(array_.id());
   indices_.fill(GL_ELEMENT_ARRAY_BUFFER, triangles, GL_STATIC_DRAW);
@@ -125,7 +124,11 @@ void ModelPainter::set_texture(std::span<const std::array<float, 2>> points,
   glBindVertexArray(0);
 }
 
-void ModelPainter::draw(const CanvasView& view) const {
+std::size_t ModelPainter::triangle_count(const CanvasView& view) const {
+  return view.coarse && has_coarse() ? coarse_ : triangles_;
+}
+
+void ModelPainter::draw(const CanvasView& view, std::size_t first, std::size_t count) const {
   const bool coarse = view.coarse && has_coarse();
   const Uniforms uniforms(model_);
   uniforms.set("clip", view.clip);
@@ -143,50 +146,32 @@ void ModelPainter::draw(const CanvasView& view) const {
     glBindTexture(GL_TEXTURE_2D, texture_.id());
   }
   glBindVertexArray(coarse ? coarse_array_.id() : array_.id());
-  glDrawElements(GL_TRIANGLES, coarse ? coarse_corners_ : corners_, GL_UNSIGNED_INT, nullptr);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(first * sizeof(Triangle)));
   if (textured) {
     glBindTexture(GL_TEXTURE_2D, 0);
   }
 }
 
-void ModelPainter::make_edges() {
-  std::vector<std::uint64_t> keys;
-  keys.reserve(3 * triangles_.size());
-  for (const Triangle& t : triangles_) {
-    for (int k = 0; k < 3; ++k) {
-      const Index a = t[k];
-      const Index b = t[(k + 1) % 3];
-      keys.push_back(std::uint64_t{std::min(a, b)} << 32U | std::max(a, b));
-    }
-  }
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  std::vector<Index> ends;
-  ends.reserve(2 * keys.size());
-  for (const std::uint64_t key : keys) {
-    ends.push_back(static_cast<Index>(key >> 32U));
-    ends.push_back(static_cast<Index>(key));
-  }
+void ModelPainter::set_edges(std::span<const std::array<Index, 2>> edges) {
+  edge_count_ = edges.size();
   glBindVertexArray(wire_array_.id());
-  edges_.fill(GL_ELEMENT_ARRAY_BUFFER, std::span<const Index>(ends), GL_STATIC_DRAW);
-  glBindBuffer(GL_ARRAY_BUFFER, positions_.id());
-  attribute(0, 3, GL_FLOAT, sizeof(Eigen::Vector3f), 0);
+  edges_.fill(GL_ELEMENT_ARRAY_BUFFER, edges, GL_STATIC_DRAW);
   glBindVertexArray(0);
-  edge_ends_ = static_cast<GLsizei>(ends.size());
-  has_edges_ = true;
 }
 
-void ModelPainter::draw_wireframe(const CanvasView& view) {
-  if (!has_edges_) {
-    make_edges();
-  }
+void ModelPainter::draw_wireframe(const CanvasView& view, std::size_t first,
+                                  std::size_t count) const {
   const Uniforms uniforms(wire_);
   uniforms.set("clip", view.clip);
   const float alpha = 0.45F;
   const Rgb& c = view.wire_color;
   uniforms.set("one_color", Rgb{c[0] * alpha, c[1] * alpha, c[2] * alpha}, alpha);
   glBindVertexArray(wire_array_.id());
-  glDrawElements(GL_LINES, edge_ends_, GL_UNSIGNED_INT, nullptr);
+  glBindBuffer(GL_ARRAY_BUFFER, positions_.id());
+  attribute(0, 3, GL_FLOAT, sizeof(Eigen::Vector3f), 0);
+  glDrawElements(GL_LINES, static_cast<GLsizei>(2 * count), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(first * sizeof(std::array<Index, 2>)));
 }
 
 } // namespace cagewright::app

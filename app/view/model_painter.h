@@ -5,6 +5,8 @@
 #include "app/view/canvas.h"
 #include "app/view/gl_stream.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,21 +19,23 @@ public:
 
   /// See Canvas. Positions are those of the graphics card.
   void set_triangles(std::span<const Triangle> triangles, std::span<const Triangle> coarse);
+  void set_edges(std::span<const std::array<Index, 2>> edges);
   void move(std::vector<Eigen::Vector3f> positions, std::span<const Vec3> normals);
   void set_colors(std::span<const Color> colors);
   void set_texture(std::span<const std::array<float, 2>> points,
                    std::span<const std::array<float, 4>> places, const Picture& picture);
 
-  [[nodiscard]] bool empty() const { return corners_ == 0; }
-  [[nodiscard]] bool has_coarse() const { return coarse_corners_ > 0; }
-  [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
+  [[nodiscard]] bool empty() const { return triangles_ == 0; }
+  [[nodiscard]] bool has_coarse() const { return coarse_ > 0; }
+  /// Of those that `view` shows.
+  [[nodiscard]] std::size_t triangle_count(const CanvasView& view) const;
+  [[nodiscard]] std::size_t edge_count() const { return edge_count_; }
 
-  void draw(const CanvasView& view) const;
-  void draw_wireframe(const CanvasView& view);
+  /// The triangles, or edges, from `first` on.
+  void draw(const CanvasView& view, std::size_t first, std::size_t count) const;
+  void draw_wireframe(const CanvasView& view, std::size_t first, std::size_t count) const;
 
 private:
-  void make_edges();
-
   gl::Program model_, wire_;
   gl::VertexArray array_, coarse_array_, wire_array_;
   StreamBuffer positions_, normals_, colors_, indices_, coarse_indices_, edges_;
@@ -39,13 +43,11 @@ private:
   gl::Texture texture_;
   int texture_width_ = 0; // 0: none
   int texture_height_ = 0;
-  GLsizei corners_ = 0;
-  GLsizei coarse_corners_ = 0;
-  GLsizei edge_ends_ = 0;
-  bool has_edges_ = false;
+  std::size_t triangles_ = 0;
+  std::size_t coarse_ = 0;
+  std::size_t edge_count_ = 0;
   bool has_colors_ = false;
   std::size_t vertices_ = 0;
-  std::vector<Triangle> triangles_; // for the edges, when they are asked for
   std::vector<std::uint32_t> normal_bits_;
 };
 

@@ -15,14 +15,12 @@
 namespace cagewright::app {
 namespace {
 
-// Pictures that take longer are drawn coarsely while something moves, in seconds.
-constexpr double slow_picture = 0.04;
 // How much is seen round what is brought into view, a fraction of the diagonal.
 constexpr double around_a_place = 0.05;
-// So long after the last movement the picture is drawn with all triangles, in milliseconds.
+// So long after the last movement the picture is made with all triangles, in milliseconds.
 constexpr int rest_after = 250;
-// And so long after the last picture a finer one is made.
-constexpr int refine_after = 15;
+// Between the pieces of better pictures, so that whatever else there is to do comes first.
+constexpr int improve_after = 5;
 // Of a picture for a file.
 constexpr int samples_of_picture = 6;
 
@@ -56,12 +54,9 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
   rest_.setSingleShot(true);
   rest_.setInterval(rest_after);
   connect(&rest_, &QTimer::timeout, this, repaint);
-  refine_.setSingleShot(true);
-  refine_.setInterval(refine_after);
-  connect(&refine_, &QTimer::timeout, this, [this] {
-    refines_ = true;
-    update();
-  });
+  improve_.setSingleShot(true);
+  improve_.setInterval(improve_after);
+  connect(&improve_, &QTimer::timeout, this, &Viewport::improve_picture);
   connect(&document_, &Document::modelChanged, this, &Viewport::model_changed);
   connect(&document_, &Document::modelMoved, this, [this] {
     dirty_.positions = true;
@@ -144,7 +139,7 @@ void Viewport::something_moves() {
 }
 
 bool Viewport::draws_coarsely() const {
-  return coarse_while_moving_ && rest_.isActive() && canvas_->model_seconds() > slow_picture;
+  return coarse_while_moving_ && rest_.isActive() && canvas_->is_slow();
 }
 
 void Viewport::set_coarse_while_moving(bool on) {
@@ -363,6 +358,11 @@ void Viewport::upload() {
       canvas_->set_model_texture({}, {}, {});
     }
   }
+  dirty_.edges = dirty_.edges || dirty_.model;
+  if (dirty_.edges && document_.layers().wireframe && document_.has_model()) {
+    canvas_->set_model_edges(dressed_ ? document_.model()->dress->edges : document_.model()->edges);
+    dirty_.edges = false;
+  }
   dirty_.model = dirty_.positions = false;
   if (dirty_.colors) {
     const std::span<const float> weights = document_.model_weights();
@@ -420,14 +420,36 @@ CanvasView Viewport::canvas_view(int width, int height, double ratio) const {
   return view;
 }
 
+bool Viewport::is_still() const {
+  return !rest_.isActive() && !drag_.is_active() &&
+         (gesture_ == Gesture::none || gesture_ == Gesture::press);
+}
+
+/// While nothing moves, a piece at a time.
+void Viewport::improve_picture() {
+  if (!canvas_ || !is_still() || !canvas_->can_improve()) {
+    return;
+  }
+  makeCurrent();
+  const bool is_better = canvas_->improve();
+  doneCurrent();
+  if (is_better) {
+    update();
+  } else {
+    improve_.start();
+  }
+}
+
 void Viewport::finish_picture() {
   rest_.stop();
-  patient_ = true;
-  do {
-    refines_ = true;
-    grabFramebuffer();
-  } while (canvas_ && canvas_->can_refine(patient_));
-  patient_ = false;
+  grabFramebuffer();
+  if (canvas_) {
+    makeCurrent();
+    while (canvas_->can_improve(true)) {
+      canvas_->improve(true);
+    }
+    doneCurrent();
+  }
   update();
 }
 
@@ -444,13 +466,10 @@ void Viewport::paintGL() {
     CanvasView view = canvas_view(device(width()), device(height()), ratio);
     view.coarse = draws_coarsely();
     view.keep = true;
-    const bool still = !rest_.isActive() && !drag_.is_active() &&
-                       (gesture_ == Gesture::none || gesture_ == Gesture::press);
-    view.refine = std::exchange(refines_, false) && still;
-    view.patient = patient_;
+    view.patient = !coarse_while_moving_;
     canvas_->draw(view, marks, make_overlay());
-    if (still && canvas_->can_refine() && !refine_.isActive()) {
-      refine_.start(); // once all else is done
+    if (is_still() && canvas_->can_improve() && !improve_.isActive()) {
+      improve_.start(); // once all else is done
     }
   }
   QPainter painter(this);
@@ -477,10 +496,11 @@ QImage Viewport::picture(const QSize& size) {
   CanvasView view = canvas_view(size.width(), size.height(), 1);
   view.keep = view.patient = true;
   canvas_->draw(view, marks, {});
-  view.refine = true;
-  for (int i = 0; i < samples_of_picture; ++i) {
-    canvas_->draw(view, marks, {});
+  for (int i = 0; i < samples_of_picture && canvas_->can_improve(true); ++i) {
+    canvas_->improve(true);
   }
+  target.bind();
+  canvas_->draw(view, marks, {});
   target.release();
   const QImage image = target.toImage();
   with_texts_ = true;

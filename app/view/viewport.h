@@ -86,6 +86,8 @@ public:
   [[nodiscard]] bool cutting_loops() const { return loop_cut_.has_value(); }
   /// Makes the picture as fine as it gets, however long that takes.
   void finish_picture();
+  /// What draws it, once it has been shown; null: not yet, or OpenGL refuses.
+  [[nodiscard]] Canvas* canvas() { return canvas_.get(); }
   /// Takes all pins of the model away, by which it is dragged.
   void remove_pins();
   /// Takes away what was painted.
@@ -148,6 +150,7 @@ private:
   struct Dirty {
     bool model = true;
     bool positions = false;
+    bool edges = true;
     bool colors = true;
     bool voxels = true;
     bool frame = true;
@@ -158,6 +161,8 @@ private:
   [[nodiscard]] bool wears_dress() const;
   void something_moves();
   [[nodiscard]] bool draws_coarsely() const;
+  [[nodiscard]] bool is_still() const;
+  void improve_picture();
   [[nodiscard]] Box3 scene_box() const;
   [[nodiscard]] Marks make_marks();
   [[nodiscard]] Overlay make_overlay() const;
@@ -232,10 +237,8 @@ private:
   bool dressed_ = false; // what the canvas has is the model's dress
   bool with_texts_ = true;
   bool coarse_while_moving_ = true;
-  QTimer rest_;   // runs while something moves, and a moment longer
-  QTimer refine_; // until the picture is made finer
-  bool refines_ = false;
-  bool patient_ = false;
+  QTimer rest_;    // runs while something moves, and a moment longer
+  QTimer improve_; // until a piece of a better picture is made
 
   CageGraph graph_;
   bool graph_is_stale_ = true;

@@ -65,19 +65,23 @@ void Viewport::add_dabs(bool first) {
   const Pixel way = cursor_ - stroke_->last;
   const int count = first ? 1 : static_cast<int>(way.norm() / step);
   const Model& model = *document_.model();
+  std::vector<Dab> dabs;
   for (int i = 1; i <= count; ++i) {
     const Pixel at = first ? cursor_ : Pixel(stroke_->last + way * (i * step / way.norm()));
     if (std::optional<Dab> dab = dab_at(at)) {
       dab->amount = stroke_->sign * tools.brush_strength;
       dab->erases = stroke_->erases;
-      add_dab(*dab, model.mesh.positions, model.normals, stroke_->density);
-      stroke_->painted = true;
+      dabs.push_back(*dab);
     }
+  }
+  if (!dabs.empty()) {
+    paint_dabs(dabs, model.mesh.positions, model.normals, stroke_->density);
+    stroke_->painted = true;
   }
   if (count > 0 && !first) {
     stroke_->last += way * (count * step / way.norm());
   }
-  if (count > 0 && stroke_->painted) {
+  if (!dabs.empty()) {
     document_.set_density(std::make_shared<const std::vector<float>>(stroke_->density));
   }
   update();

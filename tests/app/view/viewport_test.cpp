@@ -290,9 +290,7 @@ TEST_F(ViewportWith, EditsTopologyByKeys) {
   EXPECT_EQ(document.cage_rest().face_count(), faces);
 }
 
-TEST_F(ViewportWith, ShowsOffendingFacesRed) {
-  document.set_offending_faces({0, 1, 2, 9, 20});
-  const QImage image = keep("offending-faces");
+int count_red(const QImage& image) {
   int red = 0;
   for (int y = 0; y < image.height(); y += 4) {
     for (int x = 0; x < image.width(); x += 4) {
@@ -300,7 +298,37 @@ TEST_F(ViewportWith, ShowsOffendingFacesRed) {
       red += c.red() > c.green() + 60 && c.red() > c.blue() + 60 ? 1 : 0;
     }
   }
-  EXPECT_GT(red, 50);
+  return red;
+}
+
+TEST_F(ViewportWith, ShowsOffendingFacesRed) {
+  document.set_offending_faces({0, 1, 2, 9, 20});
+  EXPECT_GT(count_red(keep("offending-faces")), 50);
+}
+
+TEST_F(ViewportWith, ShowsFacesRedWhileTheyAreDraggedIntoTheModel) {
+  view.set_standard_view("front");
+  const std::span<const Vec3> cage = document.cage_positions();
+  Index right = 0;
+  for (Index v = 0; v < cage.size(); ++v) {
+    right = cage[v].x() - std::abs(cage[v].y()) > cage[right].x() - std::abs(cage[right].y())
+                ? v
+                : right;
+  }
+  editor.select({.mode = SelectionMode::vertex, .vertices = {right}, .edges = {}, .faces = {}});
+  settle();
+  const int before = count_red(view.grabFramebuffer());
+  const QPoint from = at_vertex(right);
+  test::move_mouse(view, from);
+  key(Qt::Key_G);
+  test::move_mouse(view, at(Vec3::Zero()));
+  settle();
+  const int inside = count_red(keep("dragged-inside"));
+  EXPECT_GT(inside, before + 50) << "while the mouse is still held";
+  test::move_mouse(view, from);
+  settle();
+  EXPECT_LT(count_red(view.grabFramebuffer()), before + 10) << "and no more when it is outside";
+  key(Qt::Key_Escape);
 }
 
 TEST_F(ViewportWith, ShowsBoxesCutsAndVoxels) {
@@ -475,9 +503,12 @@ TEST_F(ViewportWith, DrawsALargeModelAsItIsOnceItRests) {
   EXPECT_LT((*large)->coarse.size(), (*large)->triangles.size() / 3);
   document.set_model(*large);
   set_cage(test::quad_cube(3));
+  Layers layers = document.layers();
+  layers.wireframe = true;
+  document.set_layers(layers);
   view.frame_all();
   view.set_coarse_while_moving(false);
-  settle();
+  view.finish_picture();
   const QImage with_all = view.grabFramebuffer();
   // Marks alone change, then are as before: the picture of the model is the kept one.
   key(Qt::Key_A);
@@ -485,9 +516,25 @@ TEST_F(ViewportWith, DrawsALargeModelAsItIsOnceItRests) {
   key(Qt::Key_A, Qt::AltModifier);
   EXPECT_EQ(view.grabFramebuffer(), with_all);
   view.set_coarse_while_moving(true);
-  view.frame_all(); // moves the camera, though not elsewhere
+  view.set_standard_view("back");
   view.grabFramebuffer();
-  EXPECT_TRUE(test::wait_until([&] { return view.grabFramebuffer() == with_all; }));
+  view.set_standard_view("front");
+  view.frame_all();
+  EXPECT_NE(view.grabFramebuffer(), with_all);
+  view.finish_picture();
+  EXPECT_EQ(view.grabFramebuffer(), with_all);
+}
+
+TEST_F(ViewportWith, NeverDrawsAllOfALargeModelAtOnce) {
+  Result<std::shared_ptr<const Model>> large = prepare_model(PolygonMesh(make_icosphere(7)), {});
+  ASSERT_TRUE(large);
+  const std::size_t all = (*large)->triangles.size();
+  document.set_model(*large);
+  settle();
+  view.canvas()->take_most_at_once();
+  EXPECT_FALSE(view.canvas()->shows_all());
+  ASSERT_TRUE(test::wait_until([&] { return view.canvas()->shows_all(); }));
+  EXPECT_LT(view.canvas()->take_most_at_once(), all / 2);
 }
 
 TEST_F(ViewportWith, TakesPicturesOfAnySizeWithoutTheGizmo) {

@@ -1,8 +1,8 @@
 // Tests of the whole window.
+#include "app/application.h"
 #include "keep_libraries.h"
 #include "mouse.h"
 
-#include <QApplication>
 #include <QDir>
 #include <QSettings>
 #include <QStandardPaths>
@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   format.setDepthBufferSize(24);
   QSurfaceFormat::setDefaultFormat(format);
   QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
-  QApplication application(argc, argv);
+  cagewright::app::Application application(argc, argv);
   if (QGuiApplication::platformName() == "offscreen") { // it ends badly with OpenGL in a window
     std::puts("these tests need a display: run them with xvfb-run");
     return 1;

@@ -1,0 +1,90 @@
+// The window answers at once, however large the model: nothing that is done with it keeps the
+// window's own thread busy for long. Measured as that thread's work, which does not depend on what
+// else the machine has to do.
+#include "app/application.h"
+#include "window_fixture.h"
+
+namespace cagewright::app {
+namespace {
+
+class LargeModel : public Window {
+protected:
+  /// What may pass from one answer to the next, in milliseconds of work: a tenth of a second is
+  /// felt. The model has a fifth of a million triangles.
+#if defined(__SANITIZE_ADDRESS__)
+  static constexpr double most_work = 300;
+#else
+  static constexpr double most_work = 30;
+#endif
+
+  void SetUp() override {
+    Window::SetUp();
+    TriangleMesh torus = make_torus(0.35, 500, 200);
+    for (Vec3& p : torus.positions) {
+      p *= 1 + 0.08 * std::sin(9 * p.x()) * std::cos(7 * p.y());
+    }
+    ASSERT_TRUE(write_mesh(PolygonMesh(torus), path("model.ply").toStdString()));
+    ASSERT_TRUE(write_mesh(PolygonMesh(make_torus(0.62, 16, 8)), path("cage.obj").toStdString()));
+  }
+
+  static Application& application() {
+    return *static_cast<Application*>(qApp);
+  }
+
+  /// What was done since the last question, and what comes of it until all is drawn.
+  void expect_answers(const char* what) {
+    ASSERT_TRUE(wait_until([this] {
+      return !session().jobs().busy() && !session().checker().busy() &&
+             !view().canvas()->can_improve();
+    }));
+    const Application::Turn& turn = application().hardest_turn();
+    EXPECT_LT(turn.work, most_work) << what << ": " << turn.what.toStdString();
+    application().forget_turns();
+  }
+  /// As an event of the window.
+  void in_turn(const char* what, const std::function<void()>& act) {
+    QMetaObject::invokeMethod(window.get(), act, Qt::QueuedConnection);
+    QCoreApplication::processEvents();
+    expect_answers(what);
+  }
+  void change_layers(const char* what, const std::function<void(Layers&)>& change) {
+    in_turn(what, [&] {
+      Layers layers = document().layers();
+      change(layers);
+      document().set_layers(layers);
+    });
+  }
+};
+
+TEST_F(LargeModel, NeverKeepsTheWindowFromAnswering) {
+  in_turn("settling", [] {});
+  in_turn("open", [this] {
+    session().open(path("model.ply").toStdString(), path("cage.obj").toStdString());
+  });
+  ASSERT_TRUE(document().has_cage());
+  in_turn("another view", [this] { view().set_standard_view("back"); });
+  change_layers("wireframe", [](Layers& l) { l.wireframe = true; });
+  change_layers("flat", [](Layers& l) { l.wireframe = l.smooth_normals = false; });
+  in_turn("select", [this] { trigger("select_all"); });
+  drag({300, 300}, {340, 320}, {}, Qt::MiddleButton);
+  expect_answers("orbit");
+  in_turn("bind", [this] { session().bind(Session::Doubts::ignore); });
+  ASSERT_EQ(document().mode(), Mode::deform);
+  change_layers("weights", [](Layers& l) { l.weights = true; });
+  change_layers("no weights", [](Layers& l) { l.weights = false; });
+  const Vec3 to = document().cage_positions()[0] + Vec3(0.2, 0, 0);
+  in_turn("drag", [this, to] {
+    session().editor().begin_move({0});
+    session().editor().move_to(std::vector<Vec3>{to});
+  });
+  in_turn("end of drag", [this] { session().editor().end_move("Move"); });
+  in_turn("undo", [this] { session().editor().undo_stack().undo(); });
+  in_turn("back to refining", [this] { session().refine(); });
+  take_tool(Tool::paint);
+  drag({500, 300}, {700, 340});
+  expect_answers("paint");
+  in_turn("another model", [this] { session().open(path("model.ply").toStdString()); });
+}
+
+} // namespace
+} // namespace cagewright::app
