@@ -289,6 +289,9 @@ void MainWindow::connect_session() {
     box.exec();
     return box.clickedButton() == go_on;
   });
+  connect(viewport_, &Viewport::regionPainted, &session_, [this](const std::vector<Index>& faces) {
+    session_.choose_region(tr("what was painted"), faces);
+  });
   connect(viewport_, &Viewport::menuRequested, this, &MainWindow::show_view_menu);
   connect(&session_, &Session::bindingDoubtful, this, &MainWindow::ask_about_binding);
   session_.set_camera_source([this] { return viewport_->camera_state(); });

@@ -52,6 +52,15 @@ bool does_not_enclose(const ValidityReport& report) {
          0;
 }
 
+/// Some, ascending, and there are no others: the model may have changed since they were chosen.
+bool fits(const std::vector<Index>& faces, const Model& model) {
+  return !faces.empty() && faces.back() < model.mesh.face_count();
+}
+
+bool same_coordinates(const CoordinateSettings& a, const CoordinateSettings& b) {
+  return &a.kind() == &b.kind() && a.text() == b.text();
+}
+
 SharedPositions shared(std::span<const Vec3> positions) {
   return std::make_shared<const std::vector<Vec3>>(positions.begin(), positions.end());
 }
@@ -79,7 +88,7 @@ Session::Session(QObject* parent)
   connect(&jobs_, &JobRunner::finished, this, [this] {
     if (waiting_ && !jobs_.busy()) {
       Waiting next = *std::exchange(waiting_, std::nullopt);
-      start(next.title, std::move(next.work));
+      start(next.title, std::move(next.work), next.kind);
     } else {
       show_bound_kind();
     }
@@ -104,31 +113,41 @@ void Session::set_settings(const GenerateSettings& settings) {
   settings_ = settings;
   Q_EMIT settingsChanged();
   const auto& binding = document_.state().binding;
-  if (binding && coordinate_settings(settings_).kind().name != binding->settings().kind().name) {
+  if (binding && !same_coordinates(coordinate_settings(settings_), binding->settings())) {
     bind_anew();
+  } else if (jobs_.busy() && under_way_ == Kind::binds_anew) { // back to what is bound
+    waiting_.reset();
+    jobs_.cancel();
   }
 }
 
 /// By other coordinates: the cage stays as it is.
 void Session::bind_anew() {
   const State& state = document_.state();
-  const bool started = start(
-      tr("Bind"),
-      [this, model = document_.model(), rest = state.rest, before = state.binding,
+  const bool overtakes = jobs_.busy() && under_way_ == Kind::binds_anew;
+  if (jobs_.busy() && !overtakes) {
+    Q_EMIT message(tr("Wait for \"%1\" to end, or cancel it").arg(jobs_.title()));
+    return; // what is bound is shown when that has ended
+  }
+  Job::Work work =
+      [this, caged = document_.caged(), rest = state.rest, before = state.binding,
        kind = coordinate_settings(settings_)](const Progress& progress) -> Result<Job::Apply> {
-        Result<std::shared_ptr<const Binding>> binding = bind_model(*model, *rest, kind, progress);
-        if (!binding) {
-          return binding.error();
-        }
-        return Job::Apply([this, before, binding = *binding] {
-          if (document_.state().binding == before) {
-            editor_.bind_anew(binding);
-            Q_EMIT message(tr("The model follows by other coordinates now"));
-          }
-        });
-      });
-  if (!started) {
-    show_bound_kind();
+    Result<std::shared_ptr<const Binding>> binding = bind_model(caged, *rest, kind, progress);
+    if (!binding) {
+      return binding.error();
+    }
+    return Job::Apply([this, before, binding = *binding] {
+      if (document_.state().binding == before) {
+        editor_.bind_anew(binding);
+        Q_EMIT message(tr("The model follows by other coordinates now"));
+      }
+    });
+  };
+  if (overtakes) { // of a number that is changed step by step the last one counts
+    waiting_.emplace(Waiting{tr("Bind"), std::move(work), Kind::binds_anew});
+    jobs_.cancel();
+  } else {
+    start(tr("Bind"), std::move(work), Kind::binds_anew);
   }
 }
 
@@ -138,10 +157,8 @@ void Session::show_bound_kind() {
   if (!binding || jobs_.busy()) {
     return;
   }
-  const std::string_view name = binding->settings().kind().name;
-  const QString bound = QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size()));
-  if (settings_.coordinates != bound) {
-    settings_.coordinates = bound;
+  if (!same_coordinates(coordinate_settings(settings_), binding->settings())) {
+    take_coordinates(binding->settings(), settings_);
     Q_EMIT settingsChanged();
   }
 }
@@ -160,7 +177,7 @@ void Session::start_next(const QString& title, Job::Work work) {
     start(title, std::move(work));
     return;
   }
-  waiting_.emplace(Waiting{title, std::move(work)});
+  waiting_.emplace(Waiting{title, std::move(work), Kind::replaceable});
   if (under_way_ == Kind::writes) {
     Q_EMIT message(tr("%1: comes next, when \"%2\" is done").arg(title, jobs_.title()));
   } else {
@@ -336,17 +353,26 @@ void Session::open_project(const fs::path& path, const fs::path& model_path, boo
           }
           model = *opened;
         }
+        std::shared_ptr<const Region> region;
+        if (model && fits(project.region_faces, *model)) {
+          Result<std::shared_ptr<const Region>> made =
+              make_region(*model, project.region_faces, project.region_name);
+          if (!made) {
+            return made.error();
+          }
+          region = *made;
+        }
         if (project.bound && model) {
           Result<std::shared_ptr<const Binding>> bound =
-              bind_model(*model, *project.state.rest, coordinate_settings(project.settings),
-                         progress.part(0.4, 1));
+              bind_model({model, region}, *project.state.rest,
+                         coordinate_settings(project.settings), progress.part(0.4, 1));
           if (!bound) {
             return bound.error();
           }
           binding = *bound;
         }
-        return Job::Apply([this, path, recovered, project, model, binding] {
-          restore(project, model, binding);
+        return Job::Apply([this, path, recovered, project, model, region, binding] {
+          restore(project, model, region, binding);
           project_path_ = recovered ? project.saved_as : path;
           modified_ = recovered;
           Q_EMIT titleChanged();
@@ -374,6 +400,7 @@ void Session::open_project(const fs::path& path, const fs::path& model_path, boo
 }
 
 void Session::restore(const Project& project, std::shared_ptr<const Model> model,
+                      std::shared_ptr<const Region> region,
                       std::shared_ptr<const Binding> binding) {
   document_.set_model(freed_elsewhere(std::move(model)));
   State state = project.state;
@@ -381,6 +408,7 @@ void Session::restore(const Project& project, std::shared_ptr<const Model> model
                         state.density->size() != document_.model()->mesh.positions.size())) {
     state.density.reset(); // of another model
   }
+  state.region = std::move(region);
   state.binding = std::move(binding);
   document_.set_state(state);
   editor_.undo_stack().clear();
@@ -401,15 +429,15 @@ void Session::generate() {
     return;
   }
   start(tr("Generate"),
-        [this, model = document_.model(), settings = settings_,
+        [this, caged = document_.caged(), settings = settings_,
          painted = document_.state().density](const Progress& progress) -> Result<Job::Apply> {
-          Result<MadeCage> made = make_cage(*model, settings, painted, progress);
+          Result<MadeCage> made = make_cage(caged, settings, painted, progress);
           if (!made) {
             return made.error();
           }
-          return Job::Apply([this, model, made = *made] {
-            if (document_.model() != model) {
-              return; // another one was opened meanwhile
+          return Job::Apply([this, model = caged.shared_model(), made = *made] {
+            if (document_.caged().shared_model() != model) {
+              return; // another one was opened or chosen meanwhile
             }
             editor_.replace_cage(made.cage, made.stages, tr("Generate Cage"));
             const QString what = tr("A valid cage of %L1 vertices and %L2 faces")
@@ -420,13 +448,53 @@ void Session::generate() {
         });
 }
 
+void Session::choose_region(const QString& name, std::vector<Index> faces) {
+  const QString title = tr("Cage for a Part");
+  if (!document_.has_model()) {
+    Q_EMIT message(tr("Open a model first"));
+    return;
+  }
+  if (document_.mode() == Mode::deform) {
+    Q_EMIT message(tr("%1: the model is bound to this cage; go back to refining first").arg(title));
+    return;
+  }
+  if (faces.size() == document_.model()->mesh.face_count()) {
+    choose_whole_model();
+    return;
+  }
+  start(title,
+        [this, title, name, faces = std::move(faces),
+         model = document_.model()](const Progress& progress) -> Result<Job::Apply> {
+          Result<std::shared_ptr<const Region>> region = make_region(*model, faces, name, progress);
+          if (!region) {
+            return region.error();
+          }
+          return Job::Apply([this, title, model, region = *region] {
+            if (document_.model() != model || document_.mode() == Mode::deform) {
+              return; // another one was opened meanwhile
+            }
+            editor_.set_region(region, title);
+            Q_EMIT message(tr("The cage is for %1 now: %L2 of %L3 faces")
+                               .arg(region->name)
+                               .arg(region->faces.size())
+                               .arg(model->mesh.face_count()));
+          });
+        });
+}
+
+void Session::choose_whole_model() {
+  if (document_.mode() == Mode::refine && document_.state().region) {
+    editor_.set_region(nullptr, tr("Cage for the Whole Model"));
+  }
+}
+
 void Session::make_stages() {
   if (!document_.has_model()) {
     Q_EMIT message(tr("Open a model first"));
     return;
   }
   start(tr("Split"),
-        [this, model = document_.model(),
+        [this, model = document_.caged().shared_model(),
          settings = settings_](const Progress& progress) -> Result<Job::Apply> {
           Result<std::shared_ptr<const BoxDecomposition>> stages =
               app::make_stages(*model, settings, progress);
@@ -434,7 +502,7 @@ void Session::make_stages() {
             return stages.error();
           }
           return Job::Apply([this, model, stages = *stages] {
-            if (document_.model() == model) {
+            if (document_.caged().shared_model() == model) {
               document_.set_stages(stages);
             }
           });
@@ -452,17 +520,18 @@ void Session::bind(Doubts doubts) {
                      check.report->valid() && !checker_.busy();
   const bool judges = doubts == Doubts::tell && !known;
   start(tr("Bind"),
-        [this, judges, model = document_.model(), rest, cage = document_.state().cage,
+        [this, judges, caged = document_.caged(), rest, cage = document_.state().cage,
          kind = coordinate_settings(settings_)](const Progress& whole) -> Result<Job::Apply> {
           if (judges) {
-            Result<JudgedCage> judged = judge_cage(*rest, model.get(), whole.part(0, 0.3));
+            const Model& model = caged.model();
+            Result<JudgedCage> judged = judge_cage(*rest, &model, whole.part(0, 0.3));
             if (!judged) {
               return judged.error();
             }
             if (!binds_well(*judged->report)) {
               BindingDoubts found{judged->report, {}};
               if (does_not_enclose(*judged->report)) {
-                found.fit = fit_cage(*rest, model->view());
+                found.fit = fit_cage(*rest, model.view());
               }
               return Job::Apply([this, found] {
                 // Not before the job has ended: what is answered may start another.
@@ -472,13 +541,12 @@ void Session::bind(Doubts doubts) {
             }
           }
           const Progress progress = whole.part(judges ? 0.3 : 0, 1);
-          Result<std::shared_ptr<const Binding>> binding =
-              bind_model(*model, *rest, kind, progress);
+          Result<std::shared_ptr<const Binding>> binding = bind_model(caged, *rest, kind, progress);
           if (!binding) {
             return binding.error();
           }
-          return Job::Apply([this, model, rest, cage, binding = *binding] {
-            if (document_.model() != model || document_.state().cage != cage) {
+          return Job::Apply([this, model = caged.shared_model(), rest, cage, binding = *binding] {
+            if (document_.caged().shared_model() != model || document_.state().cage != cage) {
               Q_EMIT message(tr("The cage was changed while it was bound: bind again"));
               return;
             }
@@ -531,10 +599,10 @@ void Session::fit_cage_to_model(Then then) {
   const auto rest = std::make_shared<const PolygonMesh>(document_.cage());
   start(title,
         [this, title, then, rest, cage = document_.state().cage,
-         model = document_.model()](const Progress&) -> Result<Job::Apply> {
+         model = document_.caged().shared_model()](const Progress&) -> Result<Job::Apply> {
           const std::optional<CageFit> fit = fit_cage(*rest, model->view());
           return Job::Apply([this, title, then, rest, cage, model, fit] {
-            if (document_.model() != model || document_.state().cage != cage) {
+            if (document_.caged().shared_model() != model || document_.state().cage != cage) {
               return; // another one meanwhile
             }
             if (!fit) {
@@ -669,10 +737,10 @@ void Session::start_export(const QString& title, std::vector<fs::path> paths,
   }
   start(
       title,
-      [this, outputs, model = document_.model(), rest = document_.state().rest,
+      [this, outputs, caged = document_.caged(), rest = document_.state().rest,
        binding = document_.state().binding](const Progress& progress) -> Result<Job::Apply> {
         Result<std::vector<FileNote>> notes =
-            export_models(*model, *rest, binding->settings(), outputs, progress);
+            export_models(caged, *rest, binding->settings(), outputs, progress);
         if (!notes) {
           return notes.error();
         }
@@ -735,11 +803,11 @@ void Session::export_animation(const fs::path& path) {
   }
   start(
       title,
-      [this, path, model = document_.model(), rest = document_.state().rest,
+      [this, path, caged = document_.caged(), rest = document_.state().rest,
        binding = document_.state().binding,
        line = document_.state().time_line](const Progress& progress) -> Result<Job::Apply> {
         if (Status s =
-                app::export_animation(*model, *rest, binding->settings(), line, path, progress);
+                app::export_animation(caged, *rest, binding->settings(), line, path, progress);
             !s) {
           return s.error();
         }
@@ -758,7 +826,7 @@ void Session::export_weights(const fs::path& path) {
   start(
       tr("Export Weights"),
       [this, path, cage, kind = coordinate_settings(settings_),
-       model = document_.model()](const Progress& progress) -> Result<Job::Apply> {
+       model = document_.caged().shared_model()](const Progress& progress) -> Result<Job::Apply> {
         if (Status s = app::export_weights(*model, cage, kind, path, progress); !s) {
           return s.error();
         }

@@ -73,6 +73,9 @@ public:
 
   void generate();
   /// Splits the model into boxes, to look at.
+  /// The cage is for these faces of the model alone, ascending; the rest stays where it is.
+  void choose_region(const QString& name, std::vector<Index> faces);
+  void choose_whole_model();
   void make_stages();
   enum class Doubts { tell, ignore };
   /// Judges the cage first: unless doubts are ignored, one that is not valid becomes
@@ -133,10 +136,10 @@ private:
   void open_project(const std::filesystem::path& path, const std::filesystem::path& model,
                     bool recovered);
   void restore(const Project& project, std::shared_ptr<const Model> model,
-               std::shared_ptr<const Binding> binding);
+               std::shared_ptr<const Region> region, std::shared_ptr<const Binding> binding);
   void start_export(const QString& title, std::vector<std::filesystem::path> paths,
                     std::vector<SharedPositions> poses);
-  enum class Kind { replaceable, writes };
+  enum class Kind { replaceable, writes, binds_anew };
   bool start(const QString& title, Job::Work work, Kind kind = Kind::replaceable);
   /// The same, but what is under way makes room: it is cancelled, or, where it writes files, ended
   /// first.
@@ -164,6 +167,7 @@ private:
   struct Waiting {
     QString title;
     Job::Work work;
+    Kind kind;
   };
   std::optional<Waiting> waiting_; // for the job under way to end
 };

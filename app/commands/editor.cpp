@@ -161,6 +161,7 @@ void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
 State Editor::without_cage() const {
   State state;
   state.density = document_.state().density;
+  state.region = document_.state().region;
   return state;
 }
 
@@ -365,6 +366,13 @@ void Editor::end_mix() {
 void Editor::set_pins(std::vector<Pin> pins, const QString& text) {
   State state = document_.state();
   state.pins = std::move(pins);
+  change(std::move(state), text);
+}
+
+void Editor::set_region(std::shared_ptr<const Region> region, const QString& text) {
+  State state = document_.state();
+  state.region = std::move(region);
+  state.stages.reset(); // of another part of the model
   change(std::move(state), text);
 }
 

@@ -108,6 +108,8 @@ public:
   /// The points by which the model is dragged.
   void set_pins(std::vector<Pin> pins, const QString& text);
   /// Where the cage is to be finer; null: nowhere.
+  /// What of the model the cage is for; null: all of it.
+  void set_region(std::shared_ptr<const Region> region, const QString& text);
   void set_density(SharedDensity density, const QString& text);
 
   void set_keyframe(int frame);

@@ -8,8 +8,8 @@ void LiveCheck::begin() {
   if (!document_.has_cage() || document_.mode() != Mode::refine) {
     return;
   }
-  if (model_ != document_.model()) {
-    model_ = document_.model();
+  if (model_ != document_.caged().shared_model()) {
+    model_ = document_.caged().shared_model();
     watched_ = nullptr;
     if (model_) {
       // The hierarchy is the model's own, and lives as long as it.

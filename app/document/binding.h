@@ -2,22 +2,54 @@
 /// A model bound to a cage, as the document keeps it.
 #pragma once
 
+#include "app/document/deformed_model.h"
+#include "app/document/region.h"
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/deform/deformer.h>
+#include <cagewright/deform/normals.h>
 
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace cagewright::app {
 
 /// Keeps a Deformer. The document only holds on to it; DeformLoop alone uses it.
 class Binding {
 public:
+  /// \param caged  what is bound, where it is not all of its model
   Binding(Deformer deformer, CoordinateSettings settings,
-          std::shared_ptr<const Coordinates> coordinates)
+          std::shared_ptr<const Coordinates> coordinates, const CagedModel& caged = {})
       : deformer_(std::move(deformer)), settings_(std::move(settings)),
-        coordinates_(std::move(coordinates)) {}
+        coordinates_(std::move(coordinates)) {
+    if (caged.region) {
+      caged_ = caged;
+      const PolygonMesh& whole = caged.whole->mesh;
+      normals_ = NormalField(whole, smooth_normals(whole));
+    }
+  }
   [[nodiscard]] Deformer& deformer() const { return deformer_; }
+
+  /// The positions and normals of the whole model, as the deformer has moved what is bound.
+  void take(DeformedModel& deformed) const {
+    const std::span<const Vec3> moved = deformer_.positions();
+    if (!caged_.region) {
+      deformed.positions.assign(moved.begin(), moved.end());
+      deformed.normals.assign(deformer_.normals().begin(), deformer_.normals().end());
+      return;
+    }
+    deformed.positions = caged_.positions({moved.begin(), moved.end()});
+    normals_.update(deformed.positions);
+    deformed.normals.assign(normals_.normals().begin(), normals_.normals().end());
+  }
+  /// See Deformer::influence(): of the whole model's vertices, 0 beside what is bound.
+  [[nodiscard]] std::vector<float> influence(std::span<const Index> cage_vertices) const {
+    std::vector<float> found = deformer_.influence(cage_vertices);
+    return caged_.region ? scattered<float>(*caged_.region, found,
+                                            std::vector<float>(caged_.whole->mesh.positions.size()))
+                         : found;
+  }
   /// By which kind it is bound.
   [[nodiscard]] const CoordinateSettings& settings() const { return settings_; }
   /// For points that are none of the model's vertices.
@@ -27,6 +59,8 @@ private:
   mutable Deformer deformer_;
   CoordinateSettings settings_;
   std::shared_ptr<const Coordinates> coordinates_;
+  CagedModel caged_;            // of a region
+  mutable NormalField normals_; // of its whole
 };
 
 } // namespace cagewright::app

@@ -248,6 +248,10 @@ void Document::set_state(const State& state) {
     check_ = {};
     cage_distances_.clear();
   }
+  if (state_.region != old.region) {
+    Q_EMIT regionChanged();
+    Q_EMIT colorsChanged();
+  }
   if (state_.stages != old.stages) {
     layers_.selected_box = -1;
     Q_EMIT stagesChanged();

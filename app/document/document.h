@@ -2,8 +2,10 @@
 /// What is open: model, cage, binding, poses, and what is shown of them. No widgets.
 #pragma once
 
+#include "app/document/deformed_model.h"
 #include "app/document/layers.h"
 #include "app/document/model.h"
+#include "app/document/region.h"
 #include "app/document/state.h"
 #include "app/edit/selection.h"
 #include "app/edit/tool_settings.h"
@@ -20,13 +22,6 @@
 #include <vector>
 
 namespace cagewright::app {
-
-/// The model as the cage's pose moves it.
-struct DeformedModel {
-  std::vector<Vec3> positions; ///< V
-  std::vector<Vec3> normals;   ///< V, unit
-  Box3 box;                    ///< of the positions
-};
 
 /// What is known about the cage's validity.
 struct CageCheck {
@@ -59,6 +54,8 @@ public:
   [[nodiscard]] bool has_model() const { return model_ != nullptr; }
   /// With has_model(). Share it with jobs.
   [[nodiscard]] const std::shared_ptr<const Model>& model() const { return model_; }
+  /// The model with what of it the cage is for. Share it with jobs.
+  [[nodiscard]] CagedModel caged() const { return {model_, state_.region}; }
   /// V positions and normals as shown: deformed when bound, else at rest. Valid until the next
   /// modelMoved() or modelChanged().
   [[nodiscard]] std::span<const Vec3> model_positions() const;
@@ -163,6 +160,7 @@ Q_SIGNALS:
   void cageChanged();  ///< topology of the cage, or no cage any more; positions too
   void cageMoved();    ///< cage_positions() or shown_cage_positions(), nothing else
   void selectionChanged();
+  void regionChanged(); ///< what of the model the cage is for
   void hiddenChanged(); ///< State::hidden_faces
   void modeChanged();
   void stagesChanged();

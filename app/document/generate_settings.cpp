@@ -142,11 +142,51 @@ GenerateOption coordinates_option() {
           choice,        [](const GenerateSettings&) { return true; }};
 }
 
+const CoordinateKind& kind_of(const GenerateSettings& settings) {
+  const CoordinateKind* kind = find_coordinate_kind(settings.coordinates.toStdString());
+  return kind != nullptr ? *kind : *coordinate_kinds().front();
+}
+
+/// A number that some kinds can be given, shown while the kind is one of them.
+GenerateOption option_of_kinds(const CoordinateOption& option) {
+  const std::string name(option.name);
+  QString label = QString::fromStdString(name).replace('-', ' ');
+  label[0] = label[0].toUpper();
+  constexpr double small = 0.01; // what has no digits among the usual three
+  return {
+      QString::fromStdString(name),
+      label,
+      text(option.help),
+      Group::binding,
+      GenerateOption::Number{option.least, option.most, option.most <= 1 ? 0.05 : 0.1,
+                             option.initial > 0 && option.initial < small ? 6 : 3,
+                             [name, initial = option.initial](GenerateSettings& s) -> double& {
+                               return s.coordinate_numbers.try_emplace(name, initial).first->second;
+                             }},
+      [&option](const GenerateSettings& s) {
+        return std::ranges::find(kind_of(s).options, &option) != kind_of(s).options.end();
+      }};
+}
+
 } // namespace
 
 CoordinateSettings coordinate_settings(const GenerateSettings& settings) {
-  const CoordinateKind* kind = find_coordinate_kind(settings.coordinates.toStdString());
-  return kind != nullptr ? CoordinateSettings(*kind) : CoordinateSettings();
+  CoordinateSettings chosen(kind_of(settings));
+  for (const auto& [name, value] : settings.coordinate_numbers) {
+    if (chosen.has(name)) {
+      static_cast<void>(chosen.set(name, QString::number(value, 'g', 17).toStdString()));
+    }
+  }
+  return chosen;
+}
+
+void take_coordinates(const CoordinateSettings& bound, GenerateSettings& settings) {
+  settings.coordinates = name_of(bound.kind());
+  for (const CoordinateOption* option : bound.kind().options) {
+    if (option->words.empty()) {
+      settings.coordinate_numbers[std::string(option->name)] = bound.number(*option);
+    }
+  }
 }
 
 const std::vector<GenerateOption>& generate_options() {
@@ -163,6 +203,11 @@ const std::vector<GenerateOption>& generate_options() {
     const std::vector<GenerateOption> density = density_options();
     all.insert(all.end(), density.begin(), density.end());
     all.push_back(coordinates_option());
+    for (const CoordinateOption* option : coordinate_options()) {
+      if (option->words.empty()) {
+        all.push_back(option_of_kinds(*option));
+      }
+    }
     return all;
   }();
   return options;

@@ -11,6 +11,8 @@
 #include <QStringList>
 
 #include <functional>
+#include <map>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -30,6 +32,9 @@ struct GenerateSettings {
   QString coordinates =
       QString::fromUtf8(coordinate_kinds().front()->name.data(),
                         static_cast<qsizetype>(coordinate_kinds().front()->name.size()));
+  /// Of its options and of those of other kinds, by CoordinateOption::name; none: as they are by
+  /// themselves.
+  std::map<std::string, double> coordinate_numbers;
   QString density_file; ///< one number for each vertex of the model: see read_vertex_weights()
   GenerateOptions options;
 };
@@ -78,8 +83,10 @@ struct GenerateOption {
 /// All of them, in the order in which they are shown.
 const std::vector<GenerateOption>& generate_options();
 
-/// The kind that the settings name.
+/// The kind that the settings name, with its numbers.
 CoordinateSettings coordinate_settings(const GenerateSettings& settings);
+/// The other way round.
+void take_coordinates(const CoordinateSettings& bound, GenerateSettings& settings);
 
 QJsonObject to_json(const GenerateSettings& settings);
 /// What is missing, of the wrong kind or out of range keeps its default.

@@ -1,5 +1,7 @@
 #include "app/document/project_file.h"
 
+#include "app/document/region.h"
+
 #include "io/atomic_file.h"
 
 #include <QFile>
@@ -75,7 +77,7 @@ template <class Visit> void visit(Layers& l, const Visit& field) {
 }
 
 template <class Visit> void visit(ToolSettings& t, const Visit& field) {
-  field("tool", t.tool, Range{0, static_cast<double>(Tool::paint)});
+  field("tool", t.tool, Range{0, static_cast<double>(Tool::region)});
   field("brush_radius", t.brush_radius, Range{1, 2000});
   field("brush_strength", t.brush_strength, Range{0.01, 1});
   field("axes", t.axes, Range{0, static_cast<double>(AxesKind::view)});
@@ -331,6 +333,40 @@ Status read_poses(const QJsonObject& json, const fs::path& path, State& state) {
   return success();
 }
 
+/// Ascending numbers as first and last of each run: 3 3, 7 90.
+QJsonArray runs_to_json(const std::vector<Index>& numbers) {
+  QJsonArray runs;
+  for (std::size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
+    for (end = begin + 1; end < numbers.size() && numbers[end] == numbers[end - 1] + 1;) {
+      ++end;
+    }
+    runs.append(static_cast<qint64>(numbers[begin]));
+    runs.append(static_cast<qint64>(numbers[end - 1]));
+  }
+  return runs;
+}
+
+std::optional<std::vector<Index>> runs_from_json(const QJsonArray& runs) {
+  constexpr double most = 1e9;
+  constexpr std::size_t most_faces = 50'000'000; // what a few words in a file may ask for
+  std::vector<Index> numbers;
+  for (qsizetype i = 0; i + 1 < runs.size(); i += 2) {
+    if (fault_of(runs[i], {}, {0, most}, true) || fault_of(runs[i + 1], {}, {0, most}, true)) {
+      return std::nullopt;
+    }
+    const auto first = static_cast<Index>(runs[i].toInteger());
+    const auto last = static_cast<Index>(runs[i + 1].toInteger());
+    if (last < first || (!numbers.empty() && first <= numbers.back()) ||
+        numbers.size() + (last - first) > most_faces) {
+      return std::nullopt;
+    }
+    for (Index n = first; n <= last; ++n) {
+      numbers.push_back(n);
+    }
+  }
+  return runs.size() % 2 == 0 ? std::optional(numbers) : std::nullopt;
+}
+
 QJsonObject place_to_json(const fs::path& file, const fs::path& project) {
   std::error_code error;
   const fs::path relative = fs::relative(file, project.parent_path(), error);
@@ -401,6 +437,10 @@ QByteArray format_project(const Project& project, const fs::path& path) {
                                     {"frames_per_second", state.time_line.frames_per_second},
                                     {"keys", keys}};
   }
+  if (state.region) {
+    json["region"] =
+        QJsonObject{{"name", state.region->name}, {"faces", runs_to_json(state.region->faces)}};
+  }
   if (state.density) {
     json["density"] = density_to_text(*state.density);
   }
@@ -465,6 +505,14 @@ Result<Project> parse_project(const QByteArray& bytes, const fs::path& path) {
       return s.error();
     }
     project.bound = json["bound"].toBool();
+  }
+  if (const QJsonObject region = json["region"].toObject(); !region.isEmpty()) {
+    project.region_name = region["name"].toString();
+    const auto faces = runs_from_json(region["faces"].toArray());
+    if (!faces) {
+      return malformed(path, "region.faces are not runs of faces, ascending");
+    }
+    project.region_faces = *faces;
   }
   const QString density = json["density"].toString();
   project.state.density = density_from_text(density);

@@ -22,7 +22,9 @@ struct Project {
   std::filesystem::path model_path;               ///< absolute; empty: no model
   std::uint64_t model_checksum = 0;               ///< of its positions
   std::vector<std::filesystem::path> more_models; ///< parts of it besides, absolute
-  State state;                                    ///< without binding and stages
+  State state;                                    ///< without binding and stages; read: region
+  QString region_name;                            ///< read: of the region
+  std::vector<Index> region_faces;                ///< and its faces, ascending; none: no region
   bool bound = false;                             ///< the model is to be bound again
   GenerateSettings settings;
   Layers layers;

@@ -15,6 +15,7 @@
 namespace cagewright::app {
 
 class Binding;
+struct Region;
 
 enum class Mode {
   refine, ///< the cage is edited: its rest is what moves
@@ -63,6 +64,7 @@ struct TimeLine {
 
 /// Cheap to copy: everything large is shared and never changed.
 struct State {
+  std::shared_ptr<const Region> region;    ///< what of the model the cage is for; null: all of it
   std::shared_ptr<const PolygonMesh> rest; ///< the cage at rest; null: there is none
   /// The cage as it is edited, C positions: in refine mode those of `rest` in effect, with drags
   /// that moved them.

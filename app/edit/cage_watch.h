@@ -27,9 +27,9 @@ struct WatchedPoints {
 /// What a watch needs of a model. Made once for each model, shared, never changed.
 struct WatchedModel : WatchedPoints {
   explicit WatchedModel(TriangleView model);
-  /// \param bvh  over the model's triangles
-  WatchedModel(WatchedPoints points, std::shared_ptr<const TriangleBvh> bvh)
-      : WatchedPoints(std::move(points)), bvh(std::move(bvh)) {}
+  /// \param hierarchy  over the model's triangles
+  WatchedModel(WatchedPoints of_model, std::shared_ptr<const TriangleBvh> hierarchy)
+      : WatchedPoints(std::move(of_model)), bvh(std::move(hierarchy)) {}
 
   std::shared_ptr<const TriangleBvh> bvh;
 };

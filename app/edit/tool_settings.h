@@ -10,9 +10,15 @@ enum class Tool {
   translate,
   rotate,
   scale,
-  pull,  ///< drags the model; the cage follows
-  paint, ///< where the cage is to be finer
+  pull,   ///< drags the model; the cage follows
+  paint,  ///< where the cage is to be finer
+  region, ///< what of the model the cage is for
 };
+
+/// Whether a tool has a brush that goes over the model at rest.
+constexpr bool is_brush(Tool tool) {
+  return tool == Tool::paint || tool == Tool::region;
+}
 enum class AxesKind { world, local, view };
 enum class Falloff { smooth, linear, sharp };
 

@@ -27,6 +27,10 @@ Checker::Checker(Document& document, QObject* parent)
     known_ = std::make_shared<Known>();
     cage_changed();
   });
+  connect(&document, &Document::regionChanged, this, [this] {
+    known_ = std::make_shared<Known>();
+    cage_changed();
+  });
   connect(&document, &Document::cageChanged, this, &Checker::cage_changed);
   connect(&document, &Document::cageMoved, this, [this] {
     if (document_.mode() == Mode::refine) {
@@ -77,7 +81,7 @@ void Checker::start() {
   // In deform mode it is the rest that has to be valid.
   const PolygonMesh cage =
       document_.mode() == Mode::refine ? document_.cage() : document_.cage_rest();
-  job_->start([this, cage, model = document_.model(),
+  job_->start([this, cage, model = document_.caged().shared_model(),
                known = known_](const Progress& progress) -> Result<Job::Apply> {
     Result<JudgedCage> judged = judge_cage(cage, model.get(), progress);
     if (!judged) {
@@ -103,7 +107,7 @@ void Checker::update_distances() {
   const bool wanted = document_.layers().distance && document_.has_cage() && document_.has_model();
   std::vector<float> distances;
   if (wanted) {
-    const Model& model = *document_.model();
+    const Model& model = document_.caged().model();
     for (const Vec3& p : document_.cage_positions()) {
       distances.push_back(static_cast<float>(model.bvh.nearest(p).distance / model.diagonal));
     }

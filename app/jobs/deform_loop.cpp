@@ -98,13 +98,12 @@ DeformLoop::Answer DeformLoop::answer(const Request& request) {
     }
     deformer.update();
     made.deformed = free_buffer();
-    made.deformed->positions.assign(deformer.positions().begin(), deformer.positions().end());
-    made.deformed->normals.assign(deformer.normals().begin(), deformer.normals().end());
+    request.binding->take(*made.deformed);
     made.deformed->box = bounding_box(made.deformed->positions);
     made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   if (request.weights) {
-    made.weights = deformer.influence(request.selected);
+    made.weights = request.binding->influence(request.selected);
   }
   return made;
 }

@@ -140,18 +140,19 @@ Result<std::vector<FileNote>> write_part(const Model& model, std::size_t number,
 
 } // namespace
 
-Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
+Result<MadeCage> make_cage(const CagedModel& caged, const GenerateSettings& settings,
                            const SharedDensity& painted, const Progress& progress) {
   GenerateOptions options = settings.options;
   Result<std::vector<double>> density = std::vector<double>();
   if (options.method != Method::boxes) {
-    density = density_of(model, settings, painted);
+    density = density_of(*caged.whole, settings, painted);
   }
   if (!density) {
     return density.error();
   }
-  options.density = *density;
-  Result<GeneratedCage> made = generate_for_polygons(model.mesh, options, progress);
+  options.density = caged.region && !density->empty() ? gathered<double>(*caged.region, *density)
+                                                      : *std::move(density);
+  Result<GeneratedCage> made = generate_for_polygons(caged.model().mesh, options, progress);
   if (!made) {
     return made.error();
   }
@@ -181,9 +182,10 @@ Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path
   return std::make_shared<const PolygonMesh>(weld(*mesh));
 }
 
-Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const PolygonMesh& cage,
+Result<std::shared_ptr<const Binding>> bind_model(const CagedModel& caged, const PolygonMesh& cage,
                                                   const CoordinateSettings& coordinates,
                                                   const Progress& progress) {
+  const Model& model = caged.model();
   DeformerOptions options;
   options.coordinates = coordinates;
   const double bytes = 4.0 * static_cast<double>(model.mesh.positions.size()) *
@@ -199,8 +201,8 @@ Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const Poly
   if (!prepared) {
     return prepared.error();
   }
-  return freed_elsewhere(
-      std::make_shared<const Binding>(std::move(*deformer), coordinates, *std::move(prepared)));
+  return freed_elsewhere(std::make_shared<const Binding>(std::move(*deformer), coordinates,
+                                                         *std::move(prepared), caged));
 }
 
 Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
@@ -253,7 +255,8 @@ fs::path path_of_part(const Model& model, std::size_t part, const fs::path& path
           path.extension().string());
 }
 
-Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
+Result<std::vector<FileNote>> export_models(const CagedModel& caged,
+                                            const PolygonMesh& cage_at_rest,
                                             const CoordinateSettings& settings,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress) {
@@ -266,16 +269,20 @@ Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMes
     poses.push_back(*output.cage);
   }
   const Result<StreamedPoses> moved =
-      deform_streaming(**coordinates, poses, model.mesh.positions, progress.part(0.2, 0.8));
+      deform_streaming(**coordinates, poses, caged.model().mesh.positions, progress.part(0.2, 0.8));
   if (!moved) {
     return moved.error();
+  }
+  const Model& model = *caged.whole;
+  std::vector<std::vector<Vec3>> shapes;
+  for (const std::vector<Vec3>& shape : moved->positions) {
+    shapes.push_back(caged.positions(shape));
   }
   std::vector<FileNote> notes;
   for (std::size_t part = 0; part < model.parts.size(); ++part) {
     const Progress share = progress.part(
         0.8 + 0.2 * static_cast<double>(part) / static_cast<double>(model.parts.size()), 1);
-    Result<std::vector<FileNote>> written =
-        write_part(model, part, moved->positions, outputs, share);
+    Result<std::vector<FileNote>> written = write_part(model, part, shapes, outputs, share);
     if (!written) {
       return written.error();
     }
@@ -284,7 +291,7 @@ Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMes
   return notes;
 }
 
-Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
+Status export_animation(const CagedModel& caged, const PolygonMesh& cage_at_rest,
                         const CoordinateSettings& settings, const TimeLine& time_line,
                         const std::filesystem::path& path, const Progress& progress) {
   const auto coordinates = prepare_coordinates(cage_at_rest, settings, progress.part(0, 0.1));
@@ -296,9 +303,14 @@ Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
     keys.push_back(*key.positions);
   }
   Result<StreamedPoses> moved =
-      deform_streaming(**coordinates, keys, model.mesh.positions, progress.part(0.1, 0.6));
+      deform_streaming(**coordinates, keys, caged.model().mesh.positions, progress.part(0.1, 0.6));
   if (!moved) {
     return moved.error();
+  }
+  const Model& model = *caged.whole;
+  std::vector<std::vector<Vec3>> shapes;
+  for (const std::vector<Vec3>& shape : moved->positions) {
+    shapes.push_back(caged.positions(shape));
   }
   std::vector<std::vector<double>> shares;
   for (int frame = time_line.first; frame <= time_line.last; ++frame) {
@@ -311,7 +323,7 @@ Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
     const std::span<const Vec3> at_rest = slice(model.normals, part);
     moving.rest_normals.assign(at_rest.begin(), at_rest.end());
     NormalField normals(moving.rest, smooth_normals(moving.rest));
-    for (const std::vector<Vec3>& shape : moved->positions) {
+    for (const std::vector<Vec3>& shape : shapes) {
       const std::span<const Vec3> positions = slice(shape, part);
       moving.shapes.emplace_back(positions.begin(), positions.end());
       normals.update(positions);

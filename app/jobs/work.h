@@ -4,6 +4,7 @@
 
 #include "app/document/generate_settings.h"
 #include "app/document/model.h"
+#include "app/document/region.h"
 #include "app/document/state.h"
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
@@ -25,10 +26,10 @@ struct MadeCage {
 };
 
 /// Makes a cage as the settings say.
-/// \param painted  what was painted in the window, for DensitySource::painted
+/// \param painted  what was painted in the window, for DensitySource::painted: of the whole model
 /// Errors: those of generate(), painted_density() and read_vertex_weights(); invalid_option
 /// (nothing was painted).
-Result<MadeCage> make_cage(const Model& model, const GenerateSettings& settings,
+Result<MadeCage> make_cage(const CagedModel& caged, const GenerateSettings& settings,
                            const SharedDensity& painted = nullptr, const Progress& progress = {});
 
 /// Splits the model into boxes only, to look at. Errors: those of decompose().
@@ -39,9 +40,9 @@ make_stages(const Model& model, const GenerateSettings& settings, const Progress
 /// Errors: those of read_mesh().
 Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path& path);
 
-/// Binds the model to the cage. Weights that would take more than 1.5 GB are kept in 16 bits.
+/// Binds what the cage is for. Weights that would take more than 1.5 GB are kept in 16 bits.
 /// Errors: those of Deformer::bind().
-Result<std::shared_ptr<const Binding>> bind_model(const Model& model, const PolygonMesh& cage,
+Result<std::shared_ptr<const Binding>> bind_model(const CagedModel& caged, const PolygonMesh& cage,
                                                   const CoordinateSettings& coordinates = {},
                                                   const Progress& progress = {});
 
@@ -71,7 +72,8 @@ std::filesystem::path path_of_part(const Model& model, std::size_t part,
 /// poses. \returns notes about what the first of them cannot hold Errors: cannot_open (a file of
 /// the model is gone), mismatch (it is another now), cannot_write, unsupported, invalid_cage,
 /// cancelled.
-Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMesh& cage_at_rest,
+Result<std::vector<FileNote>> export_models(const CagedModel& caged,
+                                            const PolygonMesh& cage_at_rest,
                                             const CoordinateSettings& settings,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress = {});
@@ -79,7 +81,7 @@ Result<std::vector<FileNote>> export_models(const Model& model, const PolygonMes
 /// Writes the model as it moves along the time line: see write_animation(). Keyframes are what is
 /// deformed, whatever the number of frames.
 /// Errors: those of write_animation(), invalid_cage.
-Status export_animation(const Model& model, const PolygonMesh& cage_at_rest,
+Status export_animation(const CagedModel& caged, const PolygonMesh& cage_at_rest,
                         const CoordinateSettings& settings, const TimeLine& time_line,
                         const std::filesystem::path& path, const Progress& progress = {});
 

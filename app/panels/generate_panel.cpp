@@ -1,11 +1,14 @@
 #include "app/panels/generate_panel.h"
 
+#include "app/icons.h"
+
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QFileDialog>
 #include <QGridLayout>
 #include <QLabel>
 #include <QLineEdit>
+#include <QMenu>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSignalBlocker>
@@ -14,6 +17,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -75,6 +80,7 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
       }
     }
   };
+  add_region(grid);
   add_group(GenerateOption::Group::basic);
   advanced_ = new QToolButton;
   advanced_->setObjectName("advanced");
@@ -149,6 +155,8 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
   layout->addWidget(refine_);
 
   connect(&session_, &Session::settingsChanged, this, &GeneratePanel::update_options);
+  connect(&session_.document(), &Document::regionChanged, this, &GeneratePanel::update_region);
+  connect(&session_.document(), &Document::modelChanged, this, &GeneratePanel::update_region);
   connect(&session_.document(), &Document::modelChanged, this, &GeneratePanel::update_buttons);
   connect(&session_.document(), &Document::cageChanged, this, &GeneratePanel::update_buttons);
   connect(&session_.document(), &Document::modeChanged, this, &GeneratePanel::update_buttons);
@@ -156,6 +164,94 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
   connect(&session_.jobs(), &JobRunner::finished, this, &GeneratePanel::update_buttons);
   update_options();
   update_buttons();
+  update_region();
+}
+
+/// What of the model the cage is for: all, objects of it, or what is painted.
+void GeneratePanel::add_region(QGridLayout* grid) {
+  region_ = new QToolButton;
+  region_->setObjectName("region");
+  region_->setToolTip(tr("What of the model the cage is for: all of it, some of its objects, or "
+                         "what you paint. The rest stays where it is"));
+  region_->setAccessibleName(tr("Cage for"));
+  region_->setPopupMode(QToolButton::InstantPopup);
+  region_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  region_->setMinimumWidth(60);
+  auto* menu = new QMenu(region_);
+  menu->setToolTipsVisible(true);
+  region_->setMenu(menu);
+  connect(menu, &QMenu::aboutToShow, this, &GeneratePanel::show_parts);
+  auto* label = new QLabel(tr("Cage for"));
+  label->setToolTip(region_->toolTip());
+  label->setBuddy(region_);
+  const int row = grid->rowCount();
+  grid->addWidget(label, row, 0);
+  grid->addWidget(region_, row, 1, 1, 2);
+}
+
+void GeneratePanel::show_parts() {
+  QMenu* menu = region_->menu();
+  menu->clear();
+  const Document& document = session_.document();
+  if (!document.has_model()) {
+    return;
+  }
+  const auto& region = document.state().region;
+  QAction* whole = menu->addAction(tr("The Whole Model"));
+  whole->setCheckable(true);
+  whole->setChecked(!region);
+  connect(whole, &QAction::triggered, &session_, &Session::choose_whole_model);
+  menu->addSeparator();
+  for (NamedPart& part : named_parts(*document.model())) {
+    QAction* action = menu->addAction(part.name);
+    action->setCheckable(true);
+    action->setChecked(region && std::ranges::includes(region->faces, part.faces));
+    action->setToolTip(tr("%L1 faces").arg(part.faces.size()));
+    connect(action, &QAction::triggered, this,
+            [this, part = std::move(part)](bool on) { take_part(part, on); });
+  }
+  menu->addSeparator();
+  QAction* paint = menu->addAction(icon("tool_region"), tr("Paint It..."));
+  paint->setToolTip(tr("With the brush, on the model"));
+  connect(paint, &QAction::triggered, this, [this] {
+    ToolSettings tools = session_.document().tools();
+    tools.tool = Tool::region;
+    session_.document().set_tools(tools);
+  });
+}
+
+/// Besides what is chosen already, or no more.
+void GeneratePanel::take_part(const NamedPart& part, bool on) {
+  const auto& region = session_.document().state().region;
+  std::vector<Index> faces;
+  if (region && on) {
+    std::ranges::set_union(region->faces, part.faces, std::back_inserter(faces));
+  } else if (region) {
+    std::ranges::set_difference(region->faces, part.faces, std::back_inserter(faces));
+  } else {
+    faces = part.faces;
+  }
+  if (faces.empty()) {
+    session_.choose_whole_model();
+    return;
+  }
+  QStringList names;
+  for (const NamedPart& other : named_parts(*session_.document().model())) {
+    if (std::ranges::includes(faces, other.faces)) {
+      names.append(other.name);
+    }
+  }
+  session_.choose_region(names.isEmpty() ? tr("what was painted") : names.join(", "),
+                         std::move(faces));
+}
+
+void GeneratePanel::update_region() {
+  const Document& document = session_.document();
+  const auto& region = document.state().region;
+  const QString name = region ? region->name : tr("the whole model");
+  constexpr int most_letters = 24;
+  region_->setText(name.size() > most_letters ? name.left(most_letters - 1) + QChar(0x2026) : name);
+  region_->setEnabled(document.has_model() && document.mode() == Mode::refine);
 }
 
 template <class Set> void GeneratePanel::change(const Set& set) {
@@ -292,6 +388,7 @@ void GeneratePanel::update_buttons() {
   bind_->setEnabled(free && document.has_model() && document.has_cage());
   bind_->setVisible(!deforming);
   refine_->setVisible(deforming);
+  update_region();
 }
 
 } // namespace cagewright::app

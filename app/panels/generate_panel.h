@@ -41,6 +41,10 @@ private:
   Field field_of(const GenerateOption::Number& number);
   Field field_of(const GenerateOption::Choice& choice);
   Field field_of(const GenerateOption::File& file);
+  void add_region(QGridLayout* grid);
+  void show_parts(); ///< in the menu of what the cage is for
+  void take_part(const NamedPart& part, bool on);
+  void update_region();
   void update_options(); ///< values, and which of them make a difference
   void update_buttons();
   template <class Set> void change(const Set& set);
@@ -55,6 +59,7 @@ private:
   Session& session_;
   std::vector<Row> rows_;
   std::map<GenerateOption::Group, QLabel*> titles_;
+  QToolButton* region_ = nullptr;
   QToolButton* advanced_ = nullptr;
   QPushButton* defaults_ = nullptr;
   QPushButton* generate_ = nullptr;

@@ -10,6 +10,13 @@
 #include <algorithm>
 
 namespace cagewright::app {
+namespace {
+
+bool choosing_region(const Document& document) {
+  return document.mode() == Mode::refine && document.tools().tool == Tool::region;
+}
+
+} // namespace
 
 GuideBar::GuideBar(Session& session, QWidget* parent) : QFrame(parent), session_(session) {
   setFrameShape(QFrame::StyledPanel);
@@ -33,7 +40,7 @@ GuideBar::GuideBar(Session& session, QWidget* parent) : QFrame(parent), session_
     const Document& document = session_.document();
     if (!document.has_model()) {
       Q_EMIT openRequested();
-    } else if (!document.has_cage()) {
+    } else if (!document.has_cage() || choosing_region(document)) {
       session_.generate();
     } else if (document.mode() == Mode::refine) {
       session_.bind();
@@ -44,6 +51,7 @@ GuideBar::GuideBar(Session& session, QWidget* parent) : QFrame(parent), session_
   const Document& document = session.document();
   connect(&document, &Document::modelChanged, this, &GuideBar::update_step);
   connect(&document, &Document::cageChanged, this, &GuideBar::update_step);
+  connect(&document, &Document::regionChanged, this, &GuideBar::update_step);
   connect(&document, &Document::modeChanged, this, &GuideBar::update_step);
   connect(&document, &Document::selectionChanged, this, &GuideBar::update_step);
   connect(&document, &Document::toolsChanged, this, &GuideBar::update_step);
@@ -63,6 +71,14 @@ void GuideBar::update_step() {
   button_->setEnabled(!session_.jobs().busy());
   if (!document.has_model()) {
     say(tr("<b>Step 1 of 5.</b> Open a model: OBJ, PLY, STL, OFF or glTF."), tr("Open..."));
+  } else if (choosing_region(document)) {
+    say(document.state().region
+            ? tr("<b>Step 2 of 5.</b> The cage is for %1. Paint more of it, or erase with Shift; "
+                 "then make a cage for it.")
+                  .arg(document.state().region->name.toHtmlEscaped())
+            : tr("<b>Step 2 of 5.</b> Paint the part of the model that the cage is for. The rest "
+                 "stays where it is."),
+        document.state().region ? tr("Generate Cage") : QString());
   } else if (!document.has_cage()) {
     say(tr("<b>Step 2 of 5.</b> Make a cage: a coarse shell round the model, by which you will "
            "move it."),

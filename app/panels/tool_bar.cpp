@@ -20,7 +20,7 @@ struct Named {
   const char* help;
 };
 
-constexpr std::array<Named, 7> tool_names = {
+constexpr std::array<Named, 8> tool_names = {
     Named{"tool_box", "Box",
           "Drag a box round what to select (B). Shift adds, Shift+Ctrl takes away"},
     Named{"tool_lasso", "Lasso", "Draw round what to select. With any tool: hold Ctrl"},
@@ -32,7 +32,10 @@ constexpr std::array<Named, 7> tool_names = {
           "it; Ctrl+click takes the pin away"},
     Named{"tool_paint", "Paint Density",
           "Paint on the model where the next cage is to be finer. Ctrl: coarser, Shift: erase, "
-          "Ctrl+wheel: size of the brush"}};
+          "Ctrl+wheel: size of the brush"},
+    Named{"tool_region", "Paint What the Cage Is For",
+          "Paint the part of the model that the cage is for; the rest stays where it is. Shift: "
+          "erase, Ctrl+wheel: size of the brush"}};
 
 struct Switch {
   Named named;

@@ -112,7 +112,7 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
     update();
   });
   connect(&document_, &Document::toolsChanged, this, [this] {
-    const bool paints = document_.tools().tool == Tool::paint;
+    const bool paints = is_brush(document_.tools().tool);
     dirty_.colors = dirty_.colors || paints != painted_before_;
     painted_before_ = paints;
     update_cursor();
@@ -313,8 +313,63 @@ void Viewport::resizeGL(int width, int height) {
 /// In its own colors, with materials and textures, unless other colors say something.
 bool Viewport::wears_dress() const {
   return document_.layers().look == SurfaceLook::own && document_.has_model() &&
-         document_.model()->dress && document_.tools().tool != Tool::paint &&
+         document_.model()->dress && !is_brush(document_.tools().tool) &&
+         !document_.state().region &&
          !(document_.layers().weights && !document_.model_weights().empty());
+}
+
+/// One for each vertex of the mesh that is drawn, or none: then all have the same.
+std::vector<Color> Viewport::model_colors() const {
+  const Document& document = document_;
+  if (dressed_) {
+    return document.model()->dress->colors;
+  }
+  const auto of = [](std::size_t count, const auto& color) {
+    std::vector<Color> colors(count);
+    parallel_for(0, count, 4096, [&](std::size_t i) { colors[i] = color(i); });
+    return colors;
+  };
+  const std::size_t vertices = document.model_positions().size();
+  const SharedDensity& density = document.state().density;
+  if (document.tools().tool == Tool::paint && density && density->size() == vertices) {
+    return of(vertices, [&](std::size_t i) { return density_color((*density)[i], colors_.model); });
+  }
+  const std::span<const float> weights = document.model_weights();
+  const bool shows_weights = document.layers().weights && weights.size() == vertices;
+  if (shows_weights && vertices > 0) {
+    return of(vertices, [&](std::size_t i) { return weight_color(weights[i]); });
+  }
+  if ((stroke_ && stroke_->chooses) || document.state().region) {
+    return region_colors();
+  }
+  if (document.layers().look == SurfaceLook::own && document.has_model()) {
+    const auto& own = document.model()->mesh.colors;
+    return of(own.size(), [&](std::size_t i) {
+      return color_of(Rgb{own[i][0], own[i][1], own[i][2]});
+    });
+  }
+  return {};
+}
+
+/// What the cage is for, as it is while it is painted, stands out.
+std::vector<Color> Viewport::region_colors() const {
+  constexpr float faint = 0.62F; // of the background
+  const Color chosen = color_of(colors_.model);
+  Rgb mixed = colors_.model;
+  for (std::size_t c = 0; c < 3; ++c) {
+    mixed[c] += faint * (colors_.bottom[c] - mixed[c]);
+  }
+  std::vector<Color> colors(document_.model_positions().size(), color_of(mixed));
+  if (stroke_ && stroke_->chooses) {
+    for (std::size_t v = 0; v < colors.size(); ++v) {
+      colors[v] = stroke_->density[v] > 0 ? chosen : colors[v];
+    }
+  } else {
+    for (const Index v : document_.state().region->vertices) {
+      colors[v] = chosen;
+    }
+  }
+  return colors;
 }
 
 void Viewport::upload() {
@@ -365,28 +420,7 @@ void Viewport::upload() {
   }
   dirty_.model = dirty_.positions = false;
   if (dirty_.colors) {
-    const std::span<const float> weights = document_.model_weights();
-    std::vector<Color> colors;
-    const SharedDensity& density = document_.state().density;
-    if (dressed_) {
-      colors = document_.model()->dress->colors;
-    } else if (document_.tools().tool == Tool::paint && density &&
-               density->size() == document_.model_positions().size()) {
-      colors.resize(density->size());
-      parallel_for(0, colors.size(), 4096,
-                   [&](std::size_t i) { colors[i] = density_color((*density)[i], colors_.model); });
-    } else if (document_.layers().look == SurfaceLook::own && document_.has_model() &&
-               !document_.model()->mesh.colors.empty() &&
-               !(document_.layers().weights && !weights.empty())) {
-      for (const auto& c : document_.model()->mesh.colors) {
-        colors.push_back(color_of(Rgb{c[0], c[1], c[2]}));
-      }
-    } else if (document_.layers().weights && weights.size() == document_.model_positions().size()) {
-      colors.resize(weights.size());
-      parallel_for(0, colors.size(), 4096,
-                   [&](std::size_t i) { colors[i] = weight_color(weights[i]); });
-    }
-    canvas_->set_model_colors(colors);
+    canvas_->set_model_colors(model_colors());
     dirty_.colors = false;
   }
   if (dirty_.voxels) {

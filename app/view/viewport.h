@@ -95,8 +95,9 @@ public:
 
 Q_SIGNALS:
   void cameraChanged();
-  void menuRequested(const QPoint& at); ///< of what can be done there
-  void hint(const QString& text);       ///< what the mouse would do here: for the status bar
+  void regionPainted(const std::vector<Index>& faces); ///< of the model, ascending
+  void menuRequested(const QPoint& at);                ///< of what can be done there
+  void hint(const QString& text); ///< what the mouse would do here: for the status bar
 
 protected:
   void initializeGL() override;
@@ -141,6 +142,7 @@ private:
     std::vector<Vec3> targets; ///< of all pins
   };
   struct Stroke {
+    bool chooses = false; ///< the region; then `density` is above 0 there
     bool erases = false;
     bool painted = false; ///< it has met the model
     double sign = 1;
@@ -159,6 +161,8 @@ private:
   // What is drawn
   void upload();
   [[nodiscard]] bool wears_dress() const;
+  [[nodiscard]] std::vector<Color> model_colors() const;
+  [[nodiscard]] std::vector<Color> region_colors() const;
   void something_moves();
   [[nodiscard]] bool draws_coarsely() const;
   [[nodiscard]] bool is_still() const;

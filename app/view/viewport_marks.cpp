@@ -147,7 +147,7 @@ Overlay Viewport::make_overlay() const {
                                color_of(colors_.cage, 0.9), 1.2F});
     }
   }
-  if (document_.tools().tool == Tool::paint && document_.has_model() &&
+  if (is_brush(document_.tools().tool) && document_.has_model() &&
       (gesture_ == Gesture::none || gesture_ == Gesture::paint) && underMouse()) {
     add_circle(cursor_, document_.tools().brush_radius, color_of(colors_.text, 0.7), overlay);
   }

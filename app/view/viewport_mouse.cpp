@@ -98,7 +98,7 @@ void Viewport::update_cursor() {
     shape = pin_at(cursor_) ? Qt::OpenHandCursor : Qt::CrossCursor;
   } else if (on_handle) {
     shape = Qt::SizeAllCursor;
-  } else if (tool == Tool::select_box || tool == Tool::select_lasso || tool == Tool::paint) {
+  } else if (tool == Tool::select_box || tool == Tool::select_lasso || is_brush(tool)) {
     shape = Qt::CrossCursor;
   }
   if (shape != cursor().shape()) {
@@ -110,10 +110,10 @@ void Viewport::hover(const Pixel& cursor) {
   const std::optional<Pick> before = hovered_;
   const Handle handle_before = hovered_handle_;
   forget_hover();
-  if (document_.tools().tool == Tool::paint) {
+  if (is_brush(document_.tools().tool)) {
     update(); // the brush goes along
   }
-  const bool paints = document_.tools().tool == Tool::paint && document_.mode() == Mode::refine;
+  const bool paints = is_brush(document_.tools().tool) && document_.mode() == Mode::refine;
   if (document_.has_cage() && !drag_.is_active() && !paints) {
     refresh_graph();
     if (const std::optional<GizmoFrame> frame = gizmo()) {
@@ -131,6 +131,9 @@ void Viewport::hover(const Pixel& cursor) {
   if (document_.tools().tool == Tool::paint && document_.has_model()) {
     Q_EMIT hint(tr("Paint: the cage becomes finer here \u00b7 Ctrl: coarser \u00b7 Shift: erase "
                    "\u00b7 Ctrl+wheel: size of the brush"));
+  } else if (document_.tools().tool == Tool::region && document_.has_model()) {
+    Q_EMIT hint(tr("Paint what the cage is for \u00b7 Shift: erase \u00b7 Ctrl+wheel: size of the "
+                   "brush"));
   } else if (document_.tools().tool == Tool::pull && document_.mode() == Mode::deform) {
     Q_EMIT hint(tr("Drag the model \u00b7 click: a pin that holds it \u00b7 Ctrl+click: away with "
                    "the pin"));
@@ -413,7 +416,7 @@ void Viewport::wheelEvent(QWheelEvent* event) {
   const QPoint pixels = event->pixelDelta();
   const double steps = event->angleDelta().y() / 120.0;
   const double zoom_steps = wheel_reversed_ ? -steps : steps;
-  if (document_.tools().tool == Tool::paint && event->modifiers().testFlag(Qt::ControlModifier)) {
+  if (is_brush(document_.tools().tool) && event->modifiers().testFlag(Qt::ControlModifier)) {
     ToolSettings tools = document_.tools();
     tools.brush_radius = std::clamp(tools.brush_radius * std::pow(1.15, steps), 4.0, 500.0);
     document_.set_tools(tools);

@@ -1,11 +1,19 @@
-// Painting on the model where the cage is to be finer.
+// Painting on the model: where the cage is to be finer, and what it is for.
 #include "app/view/viewport.h"
 
 #include "app/edit/density_brush.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cagewright::app {
+
+namespace {
+
+constexpr double whole = 1e6; // of a brush that knows no half
+
+} // namespace
 
 /// What of the model lies under the brush.
 std::optional<Dab> Viewport::dab_at(const Pixel& cursor) const {
@@ -34,7 +42,7 @@ std::optional<Dab> Viewport::dab_at(const Pixel& cursor) const {
 }
 
 bool Viewport::paint_press(const Qt::KeyboardModifiers& modifiers) {
-  if (document_.tools().tool != Tool::paint || !document_.has_model()) {
+  if (!is_brush(document_.tools().tool) || !document_.has_model()) {
     return false;
   }
   if (document_.mode() == Mode::deform) {
@@ -44,13 +52,20 @@ bool Viewport::paint_press(const Qt::KeyboardModifiers& modifiers) {
   }
   editor_.begin_step(); // the stroke may come from beside the model
   stroke_.emplace();
+  stroke_->chooses = document_.tools().tool == Tool::region;
   stroke_->erases = modifiers.testFlag(Qt::ShiftModifier);
   stroke_->sign = modifiers.testFlag(Qt::ControlModifier) ? -1 : 1;
   stroke_->last = cursor_;
-  if (const SharedDensity& before = document_.state().density) {
+  const SharedDensity& before = document_.state().density;
+  if (before && !stroke_->chooses) {
     stroke_->density = *before;
   } else {
     stroke_->density.assign(document_.model_positions().size(), 0.0F);
+  }
+  if (const auto& region = document_.state().region; region && stroke_->chooses) {
+    for (const Index v : region->vertices) {
+      stroke_->density[v] = 1;
+    }
   }
   gesture_ = Gesture::paint;
   add_dabs(true);
@@ -69,7 +84,8 @@ void Viewport::add_dabs(bool first) {
   for (int i = 1; i <= count; ++i) {
     const Pixel at = first ? cursor_ : Pixel(stroke_->last + way * (i * step / way.norm()));
     if (std::optional<Dab> dab = dab_at(at)) {
-      dab->amount = stroke_->sign * tools.brush_strength;
+      // What is chosen is so wholly, out to the rim.
+      dab->amount = stroke_->chooses ? whole : stroke_->sign * tools.brush_strength;
       dab->erases = stroke_->erases;
       dabs.push_back(*dab);
     }
@@ -81,7 +97,9 @@ void Viewport::add_dabs(bool first) {
   if (count > 0 && !first) {
     stroke_->last += way * (count * step / way.norm());
   }
-  if (!dabs.empty()) {
+  if (!dabs.empty() && stroke_->chooses) {
+    dirty_.colors = true;
+  } else if (!dabs.empty()) {
     document_.set_density(std::make_shared<const std::vector<float>>(stroke_->density));
   }
   update();
@@ -91,10 +109,17 @@ void Viewport::end_stroke(bool keep) {
   if (!stroke_) {
     return;
   }
-  const bool painted = stroke_->painted;
-  stroke_.reset();
+  const Stroke stroke = *std::exchange(stroke_, std::nullopt);
   gesture_ = Gesture::none;
-  if (keep && painted) {
+  if (stroke.chooses) {
+    editor_.cancel_step();
+    dirty_.colors = true;
+    if (keep && stroke.painted) {
+      std::vector<char> chosen(stroke.density.size());
+      std::ranges::transform(stroke.density, chosen.begin(), [](float d) { return d > 0 ? 1 : 0; });
+      Q_EMIT regionPainted(faces_within(document_.model()->mesh, chosen));
+    }
+  } else if (keep && stroke.painted) {
     editor_.end_step(tr("Paint Density"));
   } else {
     editor_.cancel_step();

@@ -51,6 +51,13 @@ std::optional<Pin> Viewport::new_pin(const Pixel& cursor) const {
     return std::nullopt;
   }
   const Model& model = *document_.model();
+  if (const auto& region = document_.state().region) {
+    for (const Index v : model.triangles[hit->triangle]) {
+      if (!std::ranges::binary_search(region->vertices, v)) {
+        return std::nullopt; // it stays where it is
+      }
+    }
+  }
   std::array<Vec3, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) {
     corners[k] = model.mesh.positions[model.triangles[hit->triangle][k]];

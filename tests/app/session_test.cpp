@@ -97,6 +97,152 @@ TEST_F(SessionTest, MakesACageThatTheCheckCallsValid) {
   EXPECT_FALSE(session_.document().has_cage());
 }
 
+TEST_F(SessionTest, FollowsByTheNumbersOfTheKindAsTheyAreChanged) {
+  open_and_bind();
+  drag(3, {0.3, 0, 0});
+  GenerateSettings settings = session_.settings();
+  settings.coordinates = "somigliana";
+  session_.set_settings(settings);
+  wait();
+  const std::vector<Vec3> before = shown_model();
+  const auto bound = [this]() -> const CoordinateSettings& {
+    return session_.document().state().binding->settings();
+  };
+  ASSERT_EQ(bound().kind().name, "somigliana");
+  for (const double bulge : {0.5, 1.0, 2.0}) { // faster than it binds: the last one counts
+    settings.coordinate_numbers["bulge"] = bulge;
+    session_.set_settings(settings);
+  }
+  ASSERT_TRUE(wait_until([this, &bound] {
+    return !session_.jobs().busy() && bound().text().find("bulge=2") != std::string::npos;
+  })) << bound().text();
+  EXPECT_GT(greatest_distance(shown_model(), before), 1e-6);
+  session_.editor().undo_stack().undo();
+  EXPECT_EQ(session_.settings().coordinate_numbers.at("bulge"), 0) << "the panel says what is so";
+  EXPECT_LT(greatest_distance(shown_model(), before), 1e-12);
+  // And they are kept with the project.
+  session_.editor().undo_stack().redo();
+  ASSERT_TRUE(session_.save_project(path("bulge.cagewright")));
+  session_.open(path("bulge.cagewright"));
+  wait();
+  EXPECT_NE(bound().text().find("bulge=2"), std::string::npos) << bound().text();
+}
+
+/// The torus, and another one beside it, as two groups of one file.
+PolygonMesh two_groups() {
+  PolygonMesh both(make_torus(0.25, 40, 20));
+  both.group_names = {"left", "right"};
+  both.face_groups.assign(both.face_count(), 0);
+  const auto first = static_cast<Index>(both.positions.size());
+  const TriangleMesh other = make_torus(0.25, 24, 12);
+  for (const Vec3& p : other.positions) {
+    both.positions.emplace_back(p + 5 * Vec3::UnitX());
+  }
+  for (const Triangle& t : other.triangles) {
+    both.add_face({t[0] + first, t[1] + first, t[2] + first});
+    both.face_groups.push_back(1);
+  }
+  return both;
+}
+
+TEST_F(SessionTest, MakesTheCageForAGroupAndLeavesTheRestWhereItIs) {
+  ASSERT_TRUE(write_mesh(two_groups(), path("two.obj")));
+  session_.open(path("two.obj"));
+  wait();
+  const Document& document = session_.document();
+  const std::vector<NamedPart> parts = named_parts(*document.model());
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[1].name.toStdString(), "right");
+  session_.choose_region(parts[1].name, parts[1].faces);
+  wait();
+  ASSERT_TRUE(document.state().region);
+  GenerateSettings settings;
+  settings.options.vertices = 40;
+  settings.options.rounds = 0; // quick
+  session_.set_settings(settings);
+  session_.generate();
+  wait();
+  ASSERT_TRUE(document.has_cage()) << failures_.front();
+  for (const Vec3& p : document.cage_positions()) {
+    EXPECT_GT(p.x(), 2) << "round the right one alone";
+  }
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_TRUE(document.check().report->valid()) << "for the right one";
+
+  session_.bind();
+  wait();
+  ASSERT_EQ(document.mode(), Mode::deform);
+  const std::vector<Vec3>& rest = document.model()->mesh.positions;
+  std::vector<Index> all;
+  std::vector<Vec3> to;
+  for (Index v = 0; v < cage().size(); ++v) {
+    all.push_back(v);
+    to.emplace_back(cage()[v] + Vec3::UnitY());
+  }
+  session_.editor().move(all, to, "Move");
+  const std::vector<Vec3> shown = shown_model();
+  ASSERT_EQ(shown.size(), rest.size());
+  for (std::size_t v = 0; v < rest.size(); ++v) {
+    const bool bound = rest[v].x() > 2;
+    ASSERT_LT((shown[v] - rest[v] - (bound ? Vec3(Vec3::UnitY()) : Vec3(Vec3::Zero()))).norm(),
+              1e-5);
+  }
+  Layers layers = document.layers();
+  layers.weights = true;
+  session_.document().set_layers(layers);
+  session_.editor().select({.mode = SelectionMode::vertex, .vertices = {0}});
+  session_.deform_loop().finish();
+  ASSERT_EQ(document.model_weights().size(), rest.size());
+  EXPECT_EQ(document.model_weights()[0], 0);
+
+  session_.export_model(path("out.ply"));
+  wait();
+  ASSERT_TRUE(failures_.empty()) << failures_.front();
+  const auto written = read_mesh(path("out.ply"));
+  ASSERT_TRUE(written);
+  EXPECT_LT(greatest_distance(written->positions, shown), 1e-5) << "all of it, in its order";
+
+  // And so it comes back.
+  ASSERT_TRUE(session_.save_project(path("part.cagewright")));
+  session_.open(path("model.obj"));
+  wait();
+  EXPECT_FALSE(document.state().region);
+  session_.open(path("part.cagewright"));
+  wait();
+  ASSERT_TRUE(document.state().region);
+  EXPECT_EQ(document.state().region->faces, parts[1].faces);
+  EXPECT_EQ(document.state().region->name, parts[1].name);
+  EXPECT_LT(greatest_distance(shown_model(), shown), 1e-5);
+}
+
+TEST_F(SessionTest, TakesBackWhatTheCageIsFor) {
+  ASSERT_TRUE(write_mesh(two_groups(), path("two.obj")));
+  session_.open(path("two.obj"), path("cage.obj"));
+  wait();
+  const Document& document = session_.document();
+  const std::vector<NamedPart> parts = named_parts(*document.model());
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_FALSE(document.check().report->valid()) << "the right one is outside";
+  session_.choose_region(parts[0].name, parts[0].faces);
+  wait();
+  EXPECT_TRUE(document.has_cage()) << "the cage that is there stays";
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_TRUE(document.check().report->valid());
+  session_.editor().undo_stack().undo();
+  EXPECT_FALSE(document.state().region);
+  session_.editor().undo_stack().redo();
+  EXPECT_TRUE(document.state().region);
+  session_.choose_region("none", {});
+  wait();
+  EXPECT_EQ(failures_.size(), 1U) << "nothing is chosen";
+  session_.bind();
+  wait();
+  ASSERT_EQ(document.mode(), Mode::deform);
+  session_.choose_region(parts[1].name, parts[1].faces);
+  wait();
+  EXPECT_EQ(document.state().region->faces, parts[0].faces) << "it is bound";
+}
+
 TEST_F(SessionTest, MakesQuadsWhereTheyAreAskedFor) {
   session_.open(path("model.obj"));
   wait();
