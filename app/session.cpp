@@ -81,8 +81,13 @@ fs::path with_suffix(const fs::path& path, const QString& suffix) {
 Session::Session(QObject* parent)
     : QObject(parent), editor_(document_), deform_loop_(document_), checker_(document_) {
   connect(&jobs_, &JobRunner::failed, this, &Session::failed);
-  connect(&jobs_, &JobRunner::cancelled, this,
-          [this](const QString& title) { Q_EMIT message(tr("%1: cancelled").arg(title)); });
+  connect(&jobs_, &JobRunner::cancelled, this, [this](const QString& title) {
+    if (under_way_ == Kind::compares && !waiting_) { // or it would begin again
+      settings_.beside.clear();
+      Q_EMIT settingsChanged();
+    }
+    Q_EMIT message(tr("%1: cancelled").arg(title));
+  });
   connect(&editor_, &Editor::message, this,
           [this](const QString& text) { Q_EMIT message(as_sentence(text)); });
   connect(&jobs_, &JobRunner::finished, this, [this] {
@@ -91,6 +96,7 @@ Session::Session(QObject* parent)
       start(next.title, std::move(next.work), next.kind);
     } else {
       show_bound_kind();
+      update_beside();
     }
   });
   connect(&document_, &Document::modeChanged, this, &Session::show_bound_kind);
@@ -115,6 +121,8 @@ void Session::set_settings(const GenerateSettings& settings) {
   const auto& binding = document_.state().binding;
   if (binding && !same_coordinates(coordinate_settings(settings_), binding->settings())) {
     bind_anew();
+  } else if (binding && !jobs_.busy()) {
+    update_beside();
   } else if (jobs_.busy() && under_way_ == Kind::binds_anew) { // back to what is bound
     waiting_.reset();
     jobs_.cancel();
@@ -124,7 +132,8 @@ void Session::set_settings(const GenerateSettings& settings) {
 /// By other coordinates: the cage stays as it is.
 void Session::bind_anew() {
   const State& state = document_.state();
-  const bool overtakes = jobs_.busy() && under_way_ == Kind::binds_anew;
+  const bool overtakes =
+      jobs_.busy() && (under_way_ == Kind::binds_anew || under_way_ == Kind::compares);
   if (jobs_.busy() && !overtakes) {
     Q_EMIT message(tr("Wait for \"%1\" to end, or cancel it").arg(jobs_.title()));
     return; // what is bound is shown when that has ended
@@ -149,6 +158,41 @@ void Session::bind_anew() {
   } else {
     start(tr("Bind"), std::move(work), Kind::binds_anew);
   }
+}
+
+/// The coordinates to compare with, once nothing else is to be done.
+void Session::update_beside() {
+  const State& state = document_.state();
+  const CoordinateKind* kind = find_coordinate_kind(settings_.beside.toStdString());
+  if (!state.binding || kind == nullptr) {
+    document_.set_beside(nullptr);
+    return;
+  }
+  GenerateSettings wanted = settings_;
+  wanted.coordinates = settings_.beside;
+  const CoordinateSettings chosen = coordinate_settings(wanted);
+  if (document_.beside() && same_coordinates(document_.beside()->settings(), chosen)) {
+    return;
+  }
+  start(
+      tr("Compare"),
+      [this, caged = document_.caged(), rest = state.rest,
+       chosen](const Progress& progress) -> Result<Job::Apply> {
+        Result<std::shared_ptr<const Binding>> binding = bind_model(caged, *rest, chosen, progress);
+        if (!binding && binding.error().code == ErrorCode::cancelled) {
+          return binding.error();
+        }
+        return Job::Apply([this, rest, binding] {
+          if (!binding) { // not again and again
+            settings_.beside.clear();
+            Q_EMIT settingsChanged();
+            Q_EMIT failed(tr("Compare"), QString::fromStdString(binding.error().message));
+          } else if (document_.state().binding && document_.state().rest == rest) {
+            document_.set_beside(*binding);
+          }
+        });
+      },
+      Kind::compares);
 }
 
 /// What is bound says by which kind: after undo, and where another was refused.

@@ -139,7 +139,7 @@ private:
                std::shared_ptr<const Region> region, std::shared_ptr<const Binding> binding);
   void start_export(const QString& title, std::vector<std::filesystem::path> paths,
                     std::vector<SharedPositions> poses);
-  enum class Kind { replaceable, writes, binds_anew };
+  enum class Kind { replaceable, writes, binds_anew, compares };
   bool start(const QString& title, Job::Work work, Kind kind = Kind::replaceable);
   /// The same, but what is under way makes room: it is cancelled, or, where it writes files, ended
   /// first.
@@ -152,6 +152,7 @@ private:
   void go_on(Then then);
   void bind_anew();
   void show_bound_kind();
+  void update_beside();
 
   Document document_;
   Editor editor_;

@@ -6,9 +6,11 @@
 #include "app/document/region.h"
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/deform/deformer.h>
+#include <cagewright/deform/following.h>
 #include <cagewright/deform/normals.h>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,9 +22,10 @@ class Binding {
 public:
   /// \param caged  what is bound, where it is not all of its model
   Binding(Deformer deformer, CoordinateSettings settings,
-          std::shared_ptr<const Coordinates> coordinates, const CagedModel& caged = {})
+          std::shared_ptr<const Coordinates> coordinates, const CagedModel& caged = {},
+          std::optional<UnseenShare> unseen = {})
       : deformer_(std::move(deformer)), settings_(std::move(settings)),
-        coordinates_(std::move(coordinates)) {
+        coordinates_(std::move(coordinates)), unseen_(unseen) {
     if (caged.region) {
       caged_ = caged;
       const PolygonMesh& whole = caged.whole->mesh;
@@ -50,6 +53,8 @@ public:
                                             std::vector<float>(caged_.whole->mesh.positions.size()))
                          : found;
   }
+  /// How much the model follows what it does not see; none: not known.
+  [[nodiscard]] const std::optional<UnseenShare>& unseen() const { return unseen_; }
   /// By which kind it is bound.
   [[nodiscard]] const CoordinateSettings& settings() const { return settings_; }
   /// For points that are none of the model's vertices.
@@ -59,6 +64,7 @@ private:
   mutable Deformer deformer_;
   CoordinateSettings settings_;
   std::shared_ptr<const Coordinates> coordinates_;
+  std::optional<UnseenShare> unseen_;
   CagedModel caged_;            // of a region
   mutable NormalField normals_; // of its whole
 };

@@ -82,6 +82,9 @@ double Document::diagonal() const {
 Box3 Document::bounds() const {
   Box3 box = deformed_ ? deformed_->box : model_ ? model_->box : Box3();
   box.extend(bounding_box(shown_cage_positions()));
+  if (deformed_beside_) {
+    box.extend(deformed_beside_->box.translated(way_beside()));
+  }
   return box;
 }
 
@@ -239,6 +242,11 @@ void Document::set_state(const State& state) {
     model_weights_.clear();
   }
   update_shown();
+  const bool loses_beside =
+      !state_.binding || state_.rest != old.rest || state_.region != old.region;
+  if (loses_beside) { // it is of another cage, or of another part of the model
+    set_beside(nullptr);
+  }
 
   const bool other_cage =
       (old.rest == nullptr) != (state_.rest == nullptr) ||
@@ -262,6 +270,7 @@ void Document::set_state(const State& state) {
     Q_EMIT cageMoved();
   }
   if (state_.binding != old.binding) {
+    set_following({});
     Q_EMIT modeChanged();
     Q_EMIT modelMoved();
     Q_EMIT viewStateChanged();
@@ -323,8 +332,39 @@ void Document::set_metrics(std::optional<CageMetrics> metrics) {
   Q_EMIT metricsChanged();
 }
 
-void Document::set_deformed(std::shared_ptr<const DeformedModel> deformed) {
+void Document::set_following(std::optional<DeformedFigures> figures) {
+  if (figures || following_) {
+    following_ = figures;
+    Q_EMIT followingChanged();
+  }
+}
+
+Vec3 Document::way_beside() const {
+  Box3 box = model_ ? model_->box : Box3();
+  if (has_cage()) {
+    box.extend(bounding_box(state_.rest->positions));
+  }
+  constexpr double apart = 1.1;
+  return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(apart * box.sizes().x(), 0, 0);
+}
+
+void Document::set_beside(std::shared_ptr<const Binding> binding) {
+  if (binding == beside_) {
+    return;
+  }
+  const bool was_shown = deformed_beside_ != nullptr;
+  beside_ = std::move(binding);
+  deformed_beside_.reset();
+  if (was_shown) {
+    Q_EMIT modelMoved();
+  }
+  Q_EMIT besideChanged();
+}
+
+void Document::set_deformed(std::shared_ptr<const DeformedModel> deformed,
+                            std::shared_ptr<const DeformedModel> beside) {
   deformed_ = std::move(deformed);
+  deformed_beside_ = std::move(beside);
   Q_EMIT modelMoved();
 }
 

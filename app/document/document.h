@@ -9,6 +9,7 @@
 #include "app/document/state.h"
 #include "app/edit/selection.h"
 #include "app/edit/tool_settings.h"
+#include <cagewright/deform/following.h>
 #include <cagewright/validate/cage_metrics.h>
 #include <cagewright/validate/validate_cage.h>
 
@@ -137,6 +138,17 @@ public:
   /// Makes what is shown what is edited, so that a drag begins with what the user sees.
   void adopt_shown_cage();
 
+  // ---- The same pose by other coordinates, to compare with: it is only looked at
+
+  /// Null: nothing is compared.
+  [[nodiscard]] const std::shared_ptr<const Binding>& beside() const { return beside_; }
+  /// Null as long as there is nothing to show. Of as many vertices as the model.
+  [[nodiscard]] const std::shared_ptr<const DeformedModel>& deformed_beside() const {
+    return deformed_beside_;
+  }
+  /// How far from the model it is shown.
+  [[nodiscard]] Vec3 way_beside() const;
+
   // ---- For Editor, jobs and loading
 
   /// Another model; the cage and all that hangs on it goes.
@@ -149,16 +161,26 @@ public:
   void set_check(CageCheck check);
   void set_offending_faces(std::vector<Index> faces);
   void set_metrics(std::optional<CageMetrics> metrics);
-  void set_deformed(std::shared_ptr<const DeformedModel> deformed);
+  /// Null: the model is as it was read.
+  [[nodiscard]] const std::shared_ptr<const DeformedModel>& deformed() const { return deformed_; }
+  /// What became of the surface of the bound model, when it came to rest last; none: not known yet,
+  /// or not bound.
+  [[nodiscard]] const std::optional<DeformedFigures>& following() const { return following_; }
+  void set_following(std::optional<DeformedFigures> figures);
+  /// \param beside  as beside() moves it, or null
+  void set_deformed(std::shared_ptr<const DeformedModel> deformed,
+                    std::shared_ptr<const DeformedModel> beside = nullptr);
+  void set_beside(std::shared_ptr<const Binding> binding);
   void set_density(SharedDensity density);
   void set_cage_distances(std::vector<float> distances);
   void set_model_weights(std::vector<float> weights);
 
 Q_SIGNALS:
-  void modelChanged(); ///< another model: everything of it
-  void modelMoved();   ///< model_positions() and model_normals()
-  void cageChanged();  ///< topology of the cage, or no cage any more; positions too
-  void cageMoved();    ///< cage_positions() or shown_cage_positions(), nothing else
+  void modelChanged();  ///< another model: everything of it
+  void besideChanged(); ///< beside()
+  void modelMoved();    ///< model_positions() and model_normals()
+  void cageChanged();   ///< topology of the cage, or no cage any more; positions too
+  void cageMoved();     ///< cage_positions() or shown_cage_positions(), nothing else
   void selectionChanged();
   void regionChanged(); ///< what of the model the cage is for
   void hiddenChanged(); ///< State::hidden_faces
@@ -166,6 +188,7 @@ Q_SIGNALS:
   void stagesChanged();
   void checkChanged(); ///< check() or offending_faces()
   void metricsChanged();
+  void followingChanged();
   void colorsChanged();  ///< cage_distances(), model_weights() or State::density
   void densityChanged(); ///< State::density
   void pinsChanged();    ///< State::pins
@@ -180,11 +203,14 @@ private:
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const DeformedModel> deformed_; // null: at rest
+  std::shared_ptr<const Binding> beside_;
+  std::shared_ptr<const DeformedModel> deformed_beside_;
   State state_;
   std::shared_ptr<const std::vector<Vec3>> shown_; // null: state_.cage
   CageCheck check_;
   std::vector<Index> offending_faces_;
   std::optional<CageMetrics> metrics_;
+  std::optional<DeformedFigures> following_;
   std::vector<float> cage_distances_;
   std::vector<float> model_weights_;
   Layers layers_;

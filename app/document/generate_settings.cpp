@@ -115,6 +115,12 @@ QString name_of(const CoordinateKind& kind) {
   return QString::fromUtf8(kind.name.data(), static_cast<qsizetype>(kind.name.size()));
 }
 
+QString label_of(const CoordinateKind& kind) {
+  QString label = name_of(kind).replace('_', ' ');
+  label[0] = label[0].toUpper();
+  return label;
+}
+
 GenerateOption coordinates_option() {
   GenerateOption::Choice choice{
       {},
@@ -131,8 +137,7 @@ GenerateOption coordinates_option() {
   QString help = text("By which coordinates the model follows the cage. While it is bound, another "
                       "kind binds it anew and keeps the pose.");
   for (const CoordinateKind* kind : coordinate_kinds()) {
-    QString label = name_of(*kind).replace('_', ' ');
-    label[0] = label[0].toUpper();
+    const QString label = label_of(*kind);
     choice.keys.append(name_of(*kind));
     choice.labels.append(label);
     help += QString("\n%1: %2.").arg(label, text(kind->idea));
@@ -145,6 +150,33 @@ GenerateOption coordinates_option() {
 const CoordinateKind& kind_of(const GenerateSettings& settings) {
   const CoordinateKind* kind = find_coordinate_kind(settings.coordinates.toStdString());
   return kind != nullptr ? *kind : *coordinate_kinds().front();
+}
+
+GenerateOption beside_option() {
+  GenerateOption::Choice choice{
+      {"none"},
+      {text("Nothing")},
+      [](const GenerateSettings& s) {
+        const auto kinds = coordinate_kinds();
+        const auto at = std::ranges::find_if(
+            kinds, [&](const CoordinateKind* k) { return name_of(*k) == s.beside; });
+        return at == kinds.end() ? 0 : 1 + static_cast<int>(at - kinds.begin());
+      },
+      [](GenerateSettings& s, int i) {
+        s.beside =
+            i == 0 ? QString() : name_of(*coordinate_kinds()[static_cast<std::size_t>(i - 1)]);
+      }};
+  for (const CoordinateKind* kind : coordinate_kinds()) {
+    choice.keys.append(name_of(*kind));
+    choice.labels.append(label_of(*kind));
+  }
+  return {"beside",
+          text("Beside it"),
+          text("While the model is bound: the same pose by other coordinates, beside it, to choose "
+               "by looking. It is not exported."),
+          Group::binding,
+          choice,
+          [](const GenerateSettings&) { return true; }};
 }
 
 /// A number that some kinds can be given, shown while the kind is one of them.
@@ -169,6 +201,11 @@ GenerateOption option_of_kinds(const CoordinateOption& option) {
 }
 
 } // namespace
+
+QString label_of_coordinates(const QString& name) {
+  const CoordinateKind* kind = find_coordinate_kind(name.toStdString());
+  return kind != nullptr ? label_of(*kind) : QString();
+}
 
 CoordinateSettings coordinate_settings(const GenerateSettings& settings) {
   CoordinateSettings chosen(kind_of(settings));
@@ -208,6 +245,7 @@ const std::vector<GenerateOption>& generate_options() {
         all.push_back(option_of_kinds(*option));
       }
     }
+    all.push_back(beside_option());
     return all;
   }();
   return options;

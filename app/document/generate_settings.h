@@ -32,6 +32,7 @@ struct GenerateSettings {
   QString coordinates =
       QString::fromUtf8(coordinate_kinds().front()->name.data(),
                         static_cast<qsizetype>(coordinate_kinds().front()->name.size()));
+  QString beside; ///< another kind to compare with, while bound; empty: none
   /// Of its options and of those of other kinds, by CoordinateOption::name; none: as they are by
   /// themselves.
   std::map<std::string, double> coordinate_numbers;
@@ -83,6 +84,8 @@ struct GenerateOption {
 /// All of them, in the order in which they are shown.
 const std::vector<GenerateOption>& generate_options();
 
+/// "Mean value" of "mean_value"; empty: no such kind.
+QString label_of_coordinates(const QString& name);
 /// The kind that the settings name, with its numbers.
 CoordinateSettings coordinate_settings(const GenerateSettings& settings);
 /// The other way round.

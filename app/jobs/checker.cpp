@@ -38,10 +38,19 @@ Checker::Checker(Document& document, QObject* parent)
     }
   });
   connect(&document, &Document::layersChanged, this, &Checker::update_distances);
+  following_timer_.setSingleShot(true);
+  following_timer_.setInterval(quiet_ms);
+  connect(&following_timer_, &QTimer::timeout, this, &Checker::follow);
+  connect(&document, &Document::modelMoved, this, [this] {
+    if (document_.mode() == Mode::deform && document_.deformed()) {
+      following_timer_.start();
+    }
+  });
 }
 
 Checker::~Checker() {
   delete job_;
+  delete following_;
 }
 
 void Checker::cage_changed() {
@@ -99,6 +108,29 @@ void Checker::start() {
       document_.set_offending_faces(judged.offending_faces);
       document_.set_check({CageCheck::State::done, judged.report});
       document_.set_metrics(metrics);
+    });
+  });
+}
+
+/// Measures what became of the bound model, once it rests.
+void Checker::follow() {
+  if (following_ != nullptr) { // it comes back here
+    following_timer_.start();
+    return;
+  }
+  if (document_.mode() != Mode::deform || !document_.deformed()) {
+    return;
+  }
+  following_ = new Job(tr("Measure"));
+  connect(following_, &Job::finished, this,
+          [this] { std::exchange(following_, nullptr)->deleteLater(); });
+  following_->start([this, model = document_.model(), deformed = document_.deformed(),
+                     binding = document_.state().binding](const Progress&) -> Result<Job::Apply> {
+    const DeformedFigures figures = deformed_figures(model->view(), deformed->positions);
+    return Job::Apply([this, figures, binding] {
+      if (document_.state().binding == binding) {
+        document_.set_following(figures);
+      }
     });
   });
 }

@@ -13,8 +13,8 @@
 
 namespace cagewright::app {
 
-/// Keeps Document::check(), metrics() and cage_distances() true. Starts when the cage has been at
-/// rest for a moment; what is overtaken by another change is stopped.
+/// Keeps Document::check(), metrics(), cage_distances() and following() true. Starts when the cage
+/// has been at rest for a moment; what is overtaken by another change is stopped.
 class Checker final : public QObject {
   Q_OBJECT
 
@@ -23,7 +23,10 @@ public:
   ~Checker() override;
 
   /// Whether a check is due or under way.
-  [[nodiscard]] bool busy() const { return job_ != nullptr || timer_.isActive(); }
+  [[nodiscard]] bool busy() const {
+    return job_ != nullptr || timer_.isActive() || following_ != nullptr ||
+           following_timer_.isActive();
+  }
 
 Q_SIGNALS:
   void finished();
@@ -32,6 +35,7 @@ private:
   void cage_changed();
   void start();
   void update_distances();
+  void follow();
 
   struct Known; ///< what is computed once for a model
 
@@ -39,6 +43,8 @@ private:
   QTimer timer_;
   std::shared_ptr<Known> known_;
   Job* job_ = nullptr;
+  QTimer following_timer_; // until the bound model is measured
+  Job* following_ = nullptr;
 };
 
 } // namespace cagewright::app

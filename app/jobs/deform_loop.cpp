@@ -15,6 +15,7 @@ DeformLoop::DeformLoop(Document& document, QObject* parent)
       thread_([this](const std::stop_token& stop) { run(stop); }) {
   connect(&document, &Document::cageMoved, this, &DeformLoop::ask_for_positions);
   connect(&document, &Document::modeChanged, this, &DeformLoop::ask_for_positions);
+  connect(&document, &Document::besideChanged, this, &DeformLoop::ask_for_positions);
   connect(&document, &Document::modeChanged, this, &DeformLoop::ask_for_weights);
   connect(&document, &Document::selectionChanged, this, &DeformLoop::ask_for_weights);
   connect(&document, &Document::layersChanged, this, &DeformLoop::ask_for_weights);
@@ -34,6 +35,7 @@ void DeformLoop::ask_for_positions() {
     request_->binding = binding;
   }
   request_->cage.assign(cage.begin(), cage.end());
+  request_->beside = document_.beside();
   wake_.notify_one();
 }
 
@@ -74,6 +76,8 @@ void DeformLoop::run(const std::stop_token& stop) {
     if (answer_ && answer_->binding == made.binding) { // not delivered yet: the newer counts
       if (made.deformed == nullptr) {
         made.deformed = std::move(answer_->deformed);
+        made.by_beside = std::move(answer_->by_beside);
+        made.beside = std::move(answer_->beside);
       }
       if (!made.weights) {
         made.weights = std::move(answer_->weights);
@@ -88,23 +92,33 @@ void DeformLoop::run(const std::stop_token& stop) {
 DeformLoop::Answer DeformLoop::answer(const Request& request) {
   Answer made;
   made.binding = request.binding;
-  Deformer& deformer = request.binding->deformer();
   if (!request.cage.empty()) {
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t v = 0; v < request.cage.size(); ++v) {
-      if (request.cage[v] != deformer.cage_positions()[v]) {
-        deformer.move_cage_vertex(static_cast<Index>(v), request.cage[v]);
-      }
+    made.deformed = moved(*request.binding, request.cage);
+    if (request.beside) {
+      made.by_beside = request.beside;
+      made.beside = moved(*request.beside, request.cage);
     }
-    deformer.update();
-    made.deformed = free_buffer();
-    request.binding->take(*made.deformed);
-    made.deformed->box = bounding_box(made.deformed->positions);
     made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   if (request.weights) {
     made.weights = request.binding->influence(request.selected);
   }
+  return made;
+}
+
+std::shared_ptr<DeformedModel> DeformLoop::moved(const Binding& binding,
+                                                 std::span<const Vec3> cage) {
+  Deformer& deformer = binding.deformer();
+  for (std::size_t v = 0; v < cage.size(); ++v) {
+    if (cage[v] != deformer.cage_positions()[v]) {
+      deformer.move_cage_vertex(static_cast<Index>(v), cage[v]);
+    }
+  }
+  deformer.update();
+  std::shared_ptr<DeformedModel> made = free_buffer();
+  binding.take(*made);
+  made->box = bounding_box(made->positions);
   return made;
 }
 
@@ -129,7 +143,8 @@ void DeformLoop::deliver() {
   }
   if (made->deformed) {
     last_update_seconds_ = made->seconds;
-    document_.set_deformed(made->deformed);
+    const bool is_beside = made->by_beside == document_.beside();
+    document_.set_deformed(made->deformed, is_beside ? made->beside : nullptr);
   }
   if (made->weights && document_.layers().weights) {
     document_.set_model_weights(*std::move(made->weights));

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -36,13 +37,16 @@ public:
 private:
   struct Request {
     std::shared_ptr<const Binding> binding;
-    std::vector<Vec3> cage;      ///< C; empty: positions are up to date
-    std::vector<Index> selected; ///< cage vertices
-    bool weights = false;        ///< colours are asked for
+    std::shared_ptr<const Binding> beside; ///< or null
+    std::vector<Vec3> cage;                ///< C; empty: positions are up to date
+    std::vector<Index> selected;           ///< cage vertices
+    bool weights = false;                  ///< colours are asked for
   };
   struct Answer {
     std::shared_ptr<const Binding> binding;
     std::shared_ptr<DeformedModel> deformed; ///< null: unchanged
+    std::shared_ptr<const Binding> by_beside;
+    std::shared_ptr<DeformedModel> beside; ///< by that, with `deformed`
     std::optional<std::vector<float>> weights;
     double seconds = 0;
   };
@@ -51,6 +55,7 @@ private:
   void ask_for_weights();
   void run(const std::stop_token& stop);
   Answer answer(const Request& request);
+  std::shared_ptr<DeformedModel> moved(const Binding& binding, std::span<const Vec3> cage);
   std::shared_ptr<DeformedModel> free_buffer();
   void deliver();
 

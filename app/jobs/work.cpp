@@ -197,12 +197,17 @@ Result<std::shared_ptr<const Binding>> bind_model(const CagedModel& caged, const
   if (!deformer) {
     return deformer.error();
   }
-  auto prepared = prepare_coordinates(cage, coordinates, progress.part(0.9, 1));
+  auto prepared = prepare_coordinates(cage, coordinates, progress.part(0.9, 0.95));
   if (!prepared) {
     return prepared.error();
   }
+  const Result<UnseenShare> unseen =
+      unseen_share(cage, **prepared, model.mesh.positions, progress.part(0.95, 1));
+  if (!unseen) {
+    return unseen.error();
+  }
   return freed_elsewhere(std::make_shared<const Binding>(std::move(*deformer), coordinates,
-                                                         *std::move(prepared), caged));
+                                                         *std::move(prepared), caged, *unseen));
 }
 
 Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,

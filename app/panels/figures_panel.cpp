@@ -1,10 +1,14 @@
 #include "app/panels/figures_panel.h"
 
+#include "app/document/binding.h"
+
 #include <QFormLayout>
 #include <QLabel>
 #include <QListWidget>
 #include <QLocale>
 #include <QVBoxLayout>
+
+#include <array>
 
 namespace cagewright::app {
 namespace {
@@ -16,6 +20,10 @@ QString percent(double fraction, int decimals) {
 QString plural(const char* one, const char* many, std::size_t count) {
   return count == 1 ? QObject::tr(one) : QObject::tr(many).arg(count);
 }
+
+/// The figures that only a bound model has.
+constexpr std::array<const char*, 4> of_bound_model = {"unseen", "stretch", "volume_change",
+                                                       "flipped"};
 
 /// From where on a figure is good, and from where on it will do.
 struct Levels {
@@ -109,6 +117,7 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
     form->addRow(label, value);
     form->labelForField(value)->setToolTip(help);
     values_[key] = value;
+    labels_[key] = form->labelForField(value);
   };
   add("vertices", tr("Vertices"), tr("Of the cage"));
   add("faces", tr("Faces"), tr("Of the cage: polygons, and triangles when they are cut"));
@@ -123,6 +132,16 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
   add("quality", tr("Face quality"),
       tr("Of the worst face: 1 for an equilateral triangle, 0 for one without area. Below 0.05 "
          "faces are needles that are hard to grasp"));
+  add("unseen", tr("Unseen share"),
+      tr("How much of the bound model's weights belongs to vertices of the cage that its points do "
+         "not see: by so much a limb is dragged by what lies across a gap. Below 5 % little is "
+         "seen of it; other coordinates, or a cage with gaps between the limbs, have less"));
+  add("stretch", tr("Stretch"),
+      tr("Of the surface of the bound model as it is now: how many times as long, or as short, a "
+         "line on it became; the mean, and what 95 % of the area stays below"));
+  add("volume_change", tr("Volume change"), tr("Of the bound model as it is now"));
+  add("flipped", tr("Folded over"),
+      tr("Triangles of the bound model that look against those round them, and did not at rest"));
   add("model", tr("Model"), tr("Vertices and triangles of the model"));
   problems_ = new QListWidget;
   problems_->setObjectName("problems");
@@ -138,6 +157,8 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
   connect(&document, &Document::metricsChanged, this, &FiguresPanel::update_figures);
   connect(&document, &Document::modelChanged, this, &FiguresPanel::update_figures);
   connect(&document, &Document::checkChanged, this, &FiguresPanel::update_figures);
+  connect(&document, &Document::modeChanged, this, &FiguresPanel::update_figures);
+  connect(&document, &Document::followingChanged, this, &FiguresPanel::update_figures);
   connect(&document, &Document::cageChanged, this, &FiguresPanel::update_check);
   connect(&document, &Document::checkChanged, this, &FiguresPanel::update_check);
   update_figures();
@@ -162,6 +183,11 @@ void FiguresPanel::choose(int row) {
   }
 }
 
+void FiguresPanel::show_row(const char* key, bool on) {
+  values_[key]->setVisible(on);
+  labels_[key]->setVisible(on);
+}
+
 void FiguresPanel::update_figures() {
   const QLocale locale;
   const auto set = [&](const char* key, const QString& text) { values_[key]->setText(text); };
@@ -175,6 +201,9 @@ void FiguresPanel::update_figures() {
                           count(document_.model()->triangles.size())));
   }
   if (!document_.has_cage()) {
+    for (const char* of_bound : of_bound_model) {
+      show_row(of_bound, false);
+    }
     return;
   }
   const PolygonMesh& cage = document_.cage_rest();
@@ -183,6 +212,23 @@ void FiguresPanel::update_figures() {
   set("faces", triangles == cage.face_count()
                    ? count(triangles)
                    : tr("%1 (%2 triangles)").arg(count(cage.face_count()), count(triangles)));
+  for (const char* of_bound : of_bound_model) {
+    show_row(of_bound, document_.mode() == Mode::deform);
+  }
+  if (const auto& binding = document_.state().binding) {
+    if (const auto& unseen = binding->unseen()) {
+      set("unseen", with_cue(percent(unseen->mean, 1), -unseen->mean, {-0.05, -0.2}));
+    }
+    if (const auto& figures = document_.following()) {
+      set("stretch", with_cue(tr("%1, 95 %: %2")
+                                  .arg(locale.toString(figures->mean_stretch, 'f', 2),
+                                       locale.toString(figures->high_stretch, 'f', 2)),
+                              -figures->high_stretch, {-1.5, -3}));
+      set("volume_change", percent(figures->volume_change, 1));
+      set("flipped", figures->flipped == 0 ? with_cue(tr("none"), 0, {0, 0})
+                                           : with_cue(count(figures->flipped), -1, {0, 0}));
+    }
+  }
   // How a cage that is none compares is no praise of it.
   const auto& report = document_.check().report;
   const auto& metrics = document_.metrics();

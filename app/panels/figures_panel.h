@@ -29,11 +29,13 @@ Q_SIGNALS:
 
 private:
   void choose(int row);
+  void show_row(const char* key, bool on);
   void update_figures();
   void update_check();
 
   Document& document_;
   std::map<QString, QLabel*> values_;
+  std::map<QString, QWidget*> labels_;
   QLabel* verdict_ = nullptr;
   QListWidget* problems_ = nullptr;
   std::vector<ViolationKind> kinds_; // of the rows

@@ -34,6 +34,26 @@ std::vector<Vec3> gathered(std::span<const Vec3> of_vertices, std::span<const In
   return found;
 }
 
+template <class T> std::vector<T> repeated(const std::vector<T>& values) {
+  std::vector<T> two = values;
+  two.insert(two.end(), values.begin(), values.end());
+  return two;
+}
+
+/// The corners, and again those of as many vertices beyond.
+template <class Corners>
+std::vector<typename Corners::value_type> twice(const Corners& corners, Index vertices) {
+  std::vector<typename Corners::value_type> two(corners.begin(), corners.end());
+  two.reserve(2 * corners.size());
+  for (auto of_second : corners) {
+    for (Index& v : of_second) {
+      v += vertices;
+    }
+    two.push_back(of_second);
+  }
+  return two;
+}
+
 } // namespace
 
 Viewport::Viewport(Editor& editor, QWidget* parent)
@@ -372,6 +392,70 @@ std::vector<Color> Viewport::region_colors() const {
   return colors;
 }
 
+/// Of the model itself: as many again are those of what is shown beside it.
+Index Viewport::drawn_vertices() const {
+  return static_cast<Index>(dressed_ ? document_.model()->dress->vertex_of.size()
+                                     : document_.model_positions().size());
+}
+
+void Viewport::upload_surface() {
+  std::span<const Vec3> positions = document_.model_positions();
+  std::span<const Vec3> normals = document_.model_normals();
+  std::vector<Vec3> made_positions; // where they are not the document's own
+  std::vector<Vec3> made_normals;
+  const Dress* dress = dressed_ ? document_.model()->dress.get() : nullptr;
+  if (dress != nullptr) {
+    made_positions = gathered(positions, dress->vertex_of);
+    made_normals = gathered(normals, dress->vertex_of);
+  }
+  if (shows_beside_) {
+    const DeformedModel& other = *document_.deformed_beside();
+    if (dress == nullptr) {
+      made_positions.assign(positions.begin(), positions.end());
+      made_normals.assign(normals.begin(), normals.end());
+    }
+    const Vec3 way = document_.way_beside();
+    const std::size_t count = made_positions.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t v = dress != nullptr ? dress->vertex_of[i] : i;
+      made_positions.push_back(other.positions[v] + way);
+      made_normals.push_back(other.normals[v]);
+    }
+  }
+  if (!made_positions.empty()) {
+    positions = made_positions;
+    normals = made_normals;
+  }
+  if (!dirty_.model) {
+    canvas_->move_model(positions, normals);
+    return;
+  }
+  dirty_.colors = true;
+  const std::span<const Triangle> triangles =
+      dress != nullptr ? std::span<const Triangle>(dress->triangles) : document_.model_triangles();
+  const std::span<const Triangle> coarse =
+      dress != nullptr ? std::span<const Triangle>(dress->coarse) : document_.coarse_triangles();
+  if (shows_beside_) {
+    canvas_->set_model(positions, normals, twice(triangles, drawn_vertices()),
+                       twice(coarse, drawn_vertices()));
+  } else {
+    canvas_->set_model(positions, normals, triangles, coarse);
+  }
+  if (dress == nullptr) {
+    canvas_->set_model_texture({}, {}, {});
+    return;
+  }
+  const QImage& atlas = dress->atlas;
+  const Picture picture{atlas.width(),
+                        atlas.height(),
+                        {atlas.constBits(), static_cast<std::size_t>(atlas.sizeInBytes())}};
+  if (shows_beside_) {
+    canvas_->set_model_texture(repeated(dress->texture_points), repeated(dress->places), picture);
+  } else {
+    canvas_->set_model_texture(dress->texture_points, dress->places, picture);
+  }
+}
+
 void Viewport::upload() {
   if (dirty_.frame) {
     const Box3 box = scene_box();
@@ -380,47 +464,29 @@ void Viewport::upload() {
                        radius > 0 ? 1 / radius : 1);
     dirty_.frame = false;
   }
-  if (wears_dress() != dressed_) {
-    dressed_ = !dressed_;
+  const auto& beside = document_.deformed_beside();
+  if (wears_dress() != dressed_ || (beside != nullptr) != shows_beside_) {
+    dressed_ = wears_dress();
+    shows_beside_ = beside != nullptr;
     dirty_.model = true;
   }
-  if (dressed_ && (dirty_.model || dirty_.positions)) {
-    const Dress& dress = *document_.model()->dress;
-    const std::vector<Vec3> positions = gathered(document_.model_positions(), dress.vertex_of);
-    const std::vector<Vec3> normals = gathered(document_.model_normals(), dress.vertex_of);
-    if (dirty_.model) {
-      canvas_->set_model(positions, normals, dress.triangles, dress.coarse);
-    } else {
-      canvas_->move_model(positions, normals);
-    }
-  } else if (dirty_.model) {
-    canvas_->set_model(document_.model_positions(), document_.model_normals(),
-                       document_.model_triangles(), document_.coarse_triangles());
-  } else if (dirty_.positions) {
-    canvas_->move_model(document_.model_positions(), document_.model_normals());
-  }
-  if (dirty_.model) {
-    dirty_.colors = true;
-    if (dressed_) {
-      const Dress& dress = *document_.model()->dress;
-      const QImage& atlas = dress.atlas;
-      canvas_->set_model_texture(
-          dress.texture_points, dress.places,
-          {atlas.width(),
-           atlas.height(),
-           {atlas.constBits(), static_cast<std::size_t>(atlas.sizeInBytes())}});
-    } else {
-      canvas_->set_model_texture({}, {}, {});
-    }
+  if (dirty_.model || dirty_.positions) {
+    upload_surface();
   }
   dirty_.edges = dirty_.edges || dirty_.model;
   if (dirty_.edges && document_.layers().wireframe && document_.has_model()) {
-    canvas_->set_model_edges(dressed_ ? document_.model()->dress->edges : document_.model()->edges);
+    const auto& edges = dressed_ ? document_.model()->dress->edges : document_.model()->edges;
+    if (shows_beside_) {
+      canvas_->set_model_edges(twice(edges, drawn_vertices()));
+    } else {
+      canvas_->set_model_edges(edges);
+    }
     dirty_.edges = false;
   }
   dirty_.model = dirty_.positions = false;
   if (dirty_.colors) {
-    canvas_->set_model_colors(model_colors());
+    const std::vector<Color> colors = model_colors();
+    canvas_->set_model_colors(shows_beside_ ? repeated(colors) : colors);
     dirty_.colors = false;
   }
   if (dirty_.voxels) {

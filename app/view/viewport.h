@@ -160,6 +160,9 @@ private:
 
   // What is drawn
   void upload();
+  void upload_surface();
+  [[nodiscard]] Index drawn_vertices() const;
+  void paint_names_beside(QPainter& painter) const;
   [[nodiscard]] bool wears_dress() const;
   [[nodiscard]] std::vector<Color> model_colors() const;
   [[nodiscard]] std::vector<Color> region_colors() const;
@@ -238,6 +241,7 @@ private:
   Dirty dirty_;
   Layers layers_before_; // what the last change of layers changed
   bool painted_before_ = false;
+  bool shows_beside_ = false;
   bool dressed_ = false; // what the canvas has is the model's dress
   bool with_texts_ = true;
   bool coarse_while_moving_ = true;

@@ -1,4 +1,6 @@
 // What the viewport draws over the model: the cage, the gizmo, words.
+#include "app/document/binding.h"
+#include "app/document/generate_settings.h"
 #include "app/edit/select.h"
 #include "app/view/viewport.h"
 
@@ -211,6 +213,7 @@ void Viewport::paint_texts(QPainter& painter) const {
     }
   }
   paint_legend(painter);
+  paint_names_beside(painter);
   if (!caption_.isEmpty()) {
     painter.setFont(font());
     const QRectF space(0, height() - 44, width(), 30);
@@ -224,6 +227,27 @@ void Viewport::paint_texts(QPainter& painter) const {
     painter.setPen(Qt::white);
     painter.drawText(plate, Qt::AlignCenter, caption_);
   }
+}
+
+/// By which coordinates each of the two follows.
+void Viewport::paint_names_beside(QPainter& painter) const {
+  const State& state = document_.state();
+  if (!document_.deformed_beside() || !state.binding || !document_.beside()) {
+    return;
+  }
+  const Vec3 middle = document_.model()->box.center();
+  const auto name = [&](const Binding& binding, const Vec3& at) {
+    if (const std::optional<Projected> seen = camera_.project(at)) {
+      const std::string_view key = binding.settings().kind().name;
+      const QString label =
+          label_of_coordinates(QString::fromUtf8(key.data(), static_cast<qsizetype>(key.size())));
+      painter.drawText(QRectF(seen->pixel.x() - 120, height() - 34, 240, 20), Qt::AlignCenter,
+                       label);
+    }
+  };
+  painter.setPen(qt(colors_.text, 0.95));
+  name(*state.binding, middle);
+  name(*document_.beside(), middle + document_.way_beside());
 }
 
 void Viewport::paint_legend(QPainter& painter) const {

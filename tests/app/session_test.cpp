@@ -128,6 +128,57 @@ TEST_F(SessionTest, FollowsByTheNumbersOfTheKindAsTheyAreChanged) {
   EXPECT_NE(bound().text().find("bulge=2"), std::string::npos) << bound().text();
 }
 
+TEST_F(SessionTest, ShowsTheSamePoseByOtherCoordinatesBesideTheModel) {
+  open_and_bind();
+  drag(3, {0.3, 0, 0});
+  const Document& document = session_.document();
+  GenerateSettings settings = session_.settings();
+  settings.beside = "green";
+  session_.set_settings(settings);
+  wait();
+  session_.deform_loop().finish();
+  ASSERT_TRUE(document.deformed_beside());
+  const std::vector<Vec3> of_model = shown_model();
+  const std::vector<Vec3> of_other = document.deformed_beside()->positions;
+  EXPECT_GT(greatest_distance(of_other, of_model), 1e-4);
+  // It is what the model would be.
+  settings.coordinates = "green";
+  settings.beside.clear();
+  session_.set_settings(settings);
+  wait();
+  EXPECT_LT(greatest_distance(shown_model(), of_other), 1e-9);
+  EXPECT_FALSE(document.deformed_beside());
+  // Back and forth between cage and pose it comes and goes.
+  settings.coordinates = "mean_value";
+  settings.beside = "green";
+  session_.set_settings(settings);
+  wait();
+  session_.deform_loop().finish();
+  EXPECT_TRUE(document.beside());
+  session_.refine();
+  EXPECT_FALSE(document.beside());
+  session_.bind();
+  wait();
+  ASSERT_TRUE(wait_until([&] { return document.deformed_beside() != nullptr; }));
+  drag(3, {0, 0.3, 0});
+  session_.deform_loop().finish();
+  EXPECT_GT(greatest_distance(document.deformed_beside()->positions, shown_model()), 1e-4);
+}
+
+TEST_F(SessionTest, MeasuresWhatBecameOfTheModelOnceItRests) {
+  open_and_bind();
+  const Document& document = session_.document();
+  ASSERT_TRUE(document.state().binding->unseen());
+  EXPECT_GT(document.state().binding->unseen()->mean, 0) << "across the hole of the torus";
+  ASSERT_TRUE(wait_until([&] { return document.following() && !session_.checker().busy(); }));
+  EXPECT_NEAR(document.following()->mean_stretch, 1, 1e-4);
+  drag(3, {0.5, 0, 0});
+  ASSERT_TRUE(wait_until([&] { return document.following()->mean_stretch > 1.001; }));
+  EXPECT_GT(document.following()->high_stretch, document.following()->mean_stretch);
+  session_.refine();
+  EXPECT_FALSE(document.following());
+}
+
 /// The torus, and another one beside it, as two groups of one file.
 PolygonMesh two_groups() {
   PolygonMesh both(make_torus(0.25, 40, 20));
@@ -190,7 +241,8 @@ TEST_F(SessionTest, MakesTheCageForAGroupAndLeavesTheRestWhereItIs) {
   Layers layers = document.layers();
   layers.weights = true;
   session_.document().set_layers(layers);
-  session_.editor().select({.mode = SelectionMode::vertex, .vertices = {0}});
+  session_.editor().select(
+      {.mode = SelectionMode::vertex, .vertices = {0}, .edges = {}, .faces = {}});
   session_.deform_loop().finish();
   ASSERT_EQ(document.model_weights().size(), rest.size());
   EXPECT_EQ(document.model_weights()[0], 0);
