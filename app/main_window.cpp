@@ -290,7 +290,7 @@ void MainWindow::connect_session() {
     return box.clickedButton() == go_on;
   });
   connect(viewport_, &Viewport::regionPainted, &session_, [this](const std::vector<Index>& faces) {
-    session_.choose_region(tr("what was painted"), faces);
+    session_.choose_region(tr("the painted part"), faces);
   });
   connect(viewport_, &Viewport::menuRequested, this, &MainWindow::show_view_menu);
   connect(&session_, &Session::bindingDoubtful, this, &MainWindow::ask_about_binding);

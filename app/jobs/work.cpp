@@ -150,8 +150,10 @@ Result<MadeCage> make_cage(const CagedModel& caged, const GenerateSettings& sett
   if (!density) {
     return density.error();
   }
-  options.density = caged.region && !density->empty() ? gathered<double>(*caged.region, *density)
-                                                      : *std::move(density);
+  if (caged.region && !density->empty()) {
+    density = gathered<double>(*caged.region, *density);
+  }
+  options.density = *density;
   Result<GeneratedCage> made = generate_for_polygons(caged.model().mesh, options, progress);
   if (!made) {
     return made.error();

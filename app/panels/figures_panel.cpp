@@ -138,7 +138,7 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
          "seen of it; other coordinates, or a cage with gaps between the limbs, have less"));
   add("stretch", tr("Stretch"),
       tr("Of the surface of the bound model as it is now: how many times as long, or as short, a "
-         "line on it became; the mean, and what 95 % of the area stays below"));
+         "line on it became at most, but for the worst 5 % of the area"));
   add("volume_change", tr("Volume change"), tr("Of the bound model as it is now"));
   add("flipped", tr("Folded over"),
       tr("Triangles of the bound model that look against those round them, and did not at rest"));
@@ -220,9 +220,7 @@ void FiguresPanel::update_figures() {
       set("unseen", with_cue(percent(unseen->mean, 1), -unseen->mean, {-0.05, -0.2}));
     }
     if (const auto& figures = document_.following()) {
-      set("stretch", with_cue(tr("%1, 95 %: %2")
-                                  .arg(locale.toString(figures->mean_stretch, 'f', 2),
-                                       locale.toString(figures->high_stretch, 'f', 2)),
+      set("stretch", with_cue(locale.toString(figures->high_stretch, 'f', 2),
                               -figures->high_stretch, {-1.5, -3}));
       set("volume_change", percent(figures->volume_change, 1));
       set("flipped", figures->flipped == 0 ? with_cue(tr("none"), 0, {0, 0})

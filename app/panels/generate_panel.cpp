@@ -106,6 +106,8 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
   connect(defaults_, &QPushButton::clicked, this, [this] {
     GenerateSettings defaults; // of a cage: how it is followed is another matter
     defaults.coordinates = session_.settings().coordinates;
+    defaults.coordinate_numbers = session_.settings().coordinate_numbers;
+    defaults.beside = session_.settings().beside;
     session_.set_settings(defaults);
   });
   grid->addWidget(defaults_, grid->rowCount(), 1);
@@ -186,7 +188,7 @@ void GeneratePanel::add_region(QGridLayout* grid) {
   label->setBuddy(region_);
   const int row = grid->rowCount();
   grid->addWidget(label, row, 0);
-  grid->addWidget(region_, row, 1, 1, 2);
+  grid->addWidget(region_, row, 1);
 }
 
 void GeneratePanel::show_parts() {
@@ -241,7 +243,7 @@ void GeneratePanel::take_part(const NamedPart& part, bool on) {
       names.append(other.name);
     }
   }
-  session_.choose_region(names.isEmpty() ? tr("what was painted") : names.join(", "),
+  session_.choose_region(names.isEmpty() ? tr("the painted part") : names.join(", "),
                          std::move(faces));
 }
 

@@ -80,6 +80,11 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
   connect(&document_, &Document::modelChanged, this, &Viewport::model_changed);
   connect(&document_, &Document::modelMoved, this, [this] {
     dirty_.positions = true;
+    const bool has_beside = document_.deformed_beside() != nullptr;
+    if (has_beside && !std::exchange(beside_framed_, has_beside)) {
+      frame_all(); // or it might stand outside the view
+    }
+    beside_framed_ = has_beside;
     something_moves();
     update();
   });
@@ -373,13 +378,17 @@ std::vector<Color> Viewport::model_colors() const {
 
 /// What the cage is for, as it is while it is painted, stands out.
 std::vector<Color> Viewport::region_colors() const {
-  constexpr float faint = 0.62F; // of the background
-  const Color chosen = color_of(colors_.model);
-  Rgb mixed = colors_.model;
-  for (std::size_t c = 0; c < 3; ++c) {
-    mixed[c] += faint * (colors_.bottom[c] - mixed[c]);
-  }
-  std::vector<Color> colors(document_.model_positions().size(), color_of(mixed));
+  const auto towards = [this](const Rgb& other, float share) {
+    Rgb mixed = colors_.model;
+    for (std::size_t c = 0; c < 3; ++c) {
+      mixed[c] += share * (other[c] - mixed[c]);
+    }
+    return color_of(mixed);
+  };
+  static constexpr Rgb accent = {0.16F, 0.52F, 0.86F};
+  const Color chosen = towards(accent, 0.45F);
+  const Color rest = towards(colors_.bottom, 0.5F);
+  std::vector<Color> colors(document_.model_positions().size(), rest);
   if (stroke_ && stroke_->chooses) {
     for (std::size_t v = 0; v < colors.size(); ++v) {
       colors[v] = stroke_->density[v] > 0 ? chosen : colors[v];

@@ -242,6 +242,7 @@ private:
   Layers layers_before_; // what the last change of layers changed
   bool painted_before_ = false;
   bool shows_beside_ = false;
+  bool beside_framed_ = false; // what is beside the model was brought into view
   bool dressed_ = false; // what the canvas has is the model's dress
   bool with_texts_ = true;
   bool coarse_while_moving_ = true;

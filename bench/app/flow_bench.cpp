@@ -83,7 +83,8 @@ public:
     const auto is_fine = [this] {
       return view().canvas() == nullptr || !view().canvas()->can_improve();
     };
-    while (clock.elapsed() < 1000 * seconds + 600 || !is_fine()) { // what comes after: repainting
+    while (static_cast<double>(clock.elapsed()) < 1000 * seconds + 600 ||
+           !is_fine()) { // what comes after: repainting
       QCoreApplication::processEvents(QEventLoop::AllEvents, 5);
     }
     const auto& longest = application().longest_turn();
@@ -191,7 +192,7 @@ void BM_flow(benchmark::State& state) {
     flow.take_tool(Tool::paint);
     flow.by_mouse("paint", {400, 250}, Qt::LeftButton);
     flow.in_turn("undo_paint", [&] { flow.editor().undo_stack().undo(); });
-    flow.take_tool(Tool::box);
+    flow.take_tool(Tool::select_box);
     flow.in_turn("generate", [&] { flow.session().generate(); });
     flow.by_mouse("box", {200, 100}, Qt::LeftButton);
     flow.in_turn("select_all", [&] { flow.press("select_all"); });
