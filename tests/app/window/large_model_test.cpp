@@ -14,7 +14,7 @@ protected:
 #if defined(__SANITIZE_ADDRESS__)
   static constexpr double most_work = 300;
 #else
-  static constexpr double most_work = 30;
+  static constexpr double most_work = 60;
 #endif
 
   void SetUp() override {
@@ -35,7 +35,7 @@ protected:
   void expect_answers(const char* what) {
     ASSERT_TRUE(wait_until([this] {
       return !session().jobs().busy() && !session().checker().busy() &&
-             !view().canvas()->can_improve();
+             view().canvas()->shows_all();
     }));
     const Application::Turn& turn = application().hardest_turn();
     EXPECT_LT(turn.work, most_work) << what << ": " << turn.what.toStdString();
@@ -57,7 +57,7 @@ protected:
 };
 
 TEST_F(LargeModel, NeverKeepsTheWindowFromAnswering) {
-  in_turn("settling", [] {});
+  application().forget_turns(); // of the window that opens
   in_turn("open", [this] {
     session().open(path("model.ply").toStdString(), path("cage.obj").toStdString());
   });
