@@ -42,7 +42,8 @@ function(cagewright_add_module)
     target_precompile_headers(cagewright_${M_NAME} REUSE_FROM cagewright_precompiled)
     # Read from a precompiled header, the compiler's own headers of vector instructions alarm g++.
     list(FILTER M_SOURCES INCLUDE REGEX "_simd\\.cpp$")
-    set_source_files_properties(${M_SOURCES} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    set_source_files_properties(${M_SOURCES} PROPERTIES SKIP_PRECOMPILE_HEADERS ON
+      COMPILE_DEFINITIONS "${CAGEWRIGHT_SIMD_DEFINITIONS}")
   endif()
   # An export of its own: who asks for one component meets no dependency of another (see Install.cmake).
   set_property(GLOBAL APPEND PROPERTY CAGEWRIGHT_MODULES ${M_NAME})

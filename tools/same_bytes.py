@@ -13,7 +13,7 @@ C library is told that the processor has neither AVX2 nor FMA (GLIBC_TUNABLES), 
 for its mathematics. The first program with 1 thread is what all others are compared with: itself in
 both settings, each other program with 4 threads and plain (--every: all of them in all settings).
 (Highway picks its instructions by the processor alone: build one of the programs with
--DHWY_COMPILE_ONLY_STATIC.) Models that need longer than --limit seconds are left out, and counted.
+CAGEWRIGHT_SIMD_DEFINITIONS=HWY_COMPILE_ONLY_STATIC.) Models that need longer than --limit seconds are left out, and counted.
 Exits with 1 if any two differ; with --keep DIR, their files are left there.
 """
 

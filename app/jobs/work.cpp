@@ -242,8 +242,9 @@ Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
     }
   }
   std::ranges::sort(judged.offending_faces);
-  const auto repeated = std::ranges::unique(judged.offending_faces);
-  judged.offending_faces.erase(repeated.begin(), repeated.end());
+  judged.offending_faces.erase(
+      std::unique(judged.offending_faces.begin(), judged.offending_faces.end()),
+      judged.offending_faces.end());
   std::erase_if(judged.offending_faces, [&](Index f) { return f >= cage.face_count(); });
   judged.report = std::make_shared<const ValidityReport>(std::move(*report));
   return judged;

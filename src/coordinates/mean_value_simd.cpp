@@ -34,9 +34,6 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "coordinates/mean_value_simd.cpp"
-// Plain scalar code, SSE4, AVX2 and AVX-512 (or those of another architecture): what lies between
-// them would only make the program larger.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
