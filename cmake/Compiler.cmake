@@ -2,7 +2,7 @@
 # a project that merely uses the library.
 set(CAGEWRIGHT_SANITIZE "" CACHE STRING "Sanitizers to build with, e.g. address,undefined")
 # Plain scalar code, SSE4, AVX2 and AVX-512 (or those of another architecture): what lies between them
-# would only make the program larger. With sanitizers, which are slow to compile, two are enough.
+# would only make the program larger. With sanitizers, which are slow to compile, one is enough.
 set(CAGEWRIGHT_SIMD_DEFINITIONS "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL)" CACHE STRING
   "Definitions that choose the instructions that Highway compiles for")
 option(CAGEWRIGHT_WERROR "Treat our own warnings as errors" OFF)

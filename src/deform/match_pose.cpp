@@ -110,7 +110,7 @@ std::vector<std::vector<Index>> face_set(const PolygonMesh& mesh, std::span<cons
     for (const Index v : mesh.face(f)) {
       face.push_back(names[v]);
     }
-    std::ranges::rotate(face, std::ranges::min_element(face));
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
   }
   std::ranges::sort(faces);
   return faces;

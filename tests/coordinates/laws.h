@@ -341,7 +341,8 @@ inline void expect_invariance(const Make& make, const PolygonMesh& cage,
   for (std::size_t f = 0; f < cage.face_count(); ++f) {
     const std::span<const Index> last = cage.face(cage.face_count() - 1 - f);
     std::vector<Index> corners(last.begin(), last.end());
-    std::ranges::rotate(corners, corners.begin() + static_cast<std::ptrdiff_t>(f % corners.size()));
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(f % corners.size()),
+                corners.end());
     shuffled.add_face(corners);
     std::vector<Index> reversed(cage.face(f).begin(), cage.face(f).end());
     std::ranges::reverse(reversed);

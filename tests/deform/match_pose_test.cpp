@@ -101,7 +101,7 @@ TEST(MatchPose, TakesFacesThatBeginElsewhereOrAreListedInAnotherOrder) {
   auto faces = faces_of(cube());
   std::ranges::reverse(faces);
   for (std::vector<Index>& face : faces) {
-    std::ranges::rotate(face, face.begin() + 1);
+    std::rotate(face.begin(), face.begin() + 1, face.end());
   }
   expect_matched(cube(), posed(with_faces(cube(), faces)), false);
 }

@@ -96,7 +96,7 @@ TEST(Triangulate, LeavesTheHoleOfAKeyholeOpen) {
       for (Index k = 0; k <= 4; ++k) {
         ring.push_back(4 + (inner - 4 + k) % 4);
       }
-      std::ranges::rotate(ring, ring.begin() + static_cast<std::ptrdiff_t>(start));
+      std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(start), ring.end());
       mesh.add_face(ring);
       EXPECT_EQ(signed_area_from_above(mesh), (std::pair<double, int>{84, 0}))
           << "bridge " << bridge << ", start " << start;
