@@ -307,7 +307,7 @@ class Generate(InAFolder):
                          (100 if "%" in defaults["clearance"] else 1))
         self.assertEqual(repr(signature["num_vertices"].default), "100")
         self.assertEqual(list(signature), ["vertices", "faces", "num_vertices", "num_faces", "max_gap", "quads", "clearance",
-                                           "method", "symmetry", "pieces", "density", "start", "threads", "progress",
+                                           "method", "symmetry", "pieces", "density", "joints", "start", "threads", "progress",
                                            "options"])
 
     def test_begins_with_a_cage_of_ones_own(self):
