@@ -214,7 +214,9 @@ Remark with_place(Remark remark) {
 
 /// The places are known last, in the model's own coordinates.
 void finish_remarks(GeneratedCage& cage, const Specks& specks) {
-  if (specks.count > 0) {
+  // Eyes and buttons are small and apart, too; what makes the box longer is hardly ever meant.
+  constexpr double notably = 1.1;
+  if (specks.enlargement >= notably) {
     add(cage, remark_of(specks, false));
   }
   if (cage.joined > 0) {

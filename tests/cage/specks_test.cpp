@@ -89,6 +89,11 @@ TEST(Specks, AreToldOrLeftOutOfTheCage) {
   ASSERT_NE(told, whole->remarks.end());
   EXPECT_TRUE(told->message.starts_with("1 tiny piece far from the rest is enclosed, too"));
 
+  const Result<GeneratedCage> near = generate(sphere_with(dust({1.25, 0, 0})), options);
+  ASSERT_TRUE(near) << near.error().message;
+  EXPECT_EQ(std::ranges::count(near->remarks, Reason::specks_enclosed, &Remark::reason), 0)
+      << "what does not make the model notably longer may well be a part of it";
+
   options = {};
   options.vertices = 30;
   options.ignore_specks = true;
