@@ -58,6 +58,23 @@ const ModelSurface& Ground::surface_here() const {
   return *surface_here_;
 }
 
+const SpaceBetween& Ground::between() const {
+  if (!between_) {
+    between_ = std::make_unique<const SpaceBetween>(model_here());
+  }
+  return *between_;
+}
+
+const SpaceBetween& Ground::between_on_side() const {
+  if (!is_half()) {
+    return between();
+  }
+  if (!between_on_side_) {
+    between_on_side_ = std::make_unique<const SpaceBetween>(between().right_half());
+  }
+  return *between_on_side_;
+}
+
 Result<Improved> Ground::improved(TriangleView start, const ImproveOptions& budget,
                                   const Progress& progress) const {
   runs_.use_one();

@@ -15,6 +15,7 @@
 #include <cagewright/core/result.h>
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/mesh/triangle_mesh.h>
+#include <cagewright/validate/webbing.h>
 
 #include <cstddef>
 #include <memory>
@@ -53,6 +54,10 @@ public:
   [[nodiscard]] const ModelSurface& surface() const;
   /// The joints of the options, in the coordinates of the ground.
   [[nodiscard]] std::vector<LimbJoint> joints_here() const;
+  /// The space between the model's limbs, in the ground's coordinates.
+  [[nodiscard]] const SpaceBetween& between() const;
+  /// Of a half what of it lies on its side.
+  [[nodiscard]] const SpaceBetween& between_on_side() const;
   /// Of the model: what all lengths are fractions of.
   [[nodiscard]] double diagonal() const { return diagonal_; }
 
@@ -107,6 +112,8 @@ private:
   mutable std::unique_ptr<const TriangleBvh> hierarchy_;
   mutable std::unique_ptr<const ModelSurface> surface_;
   mutable std::unique_ptr<const ModelSurface> surface_here_;
+  mutable std::unique_ptr<const SpaceBetween> between_;
+  mutable std::unique_ptr<const SpaceBetween> between_on_side_;
 };
 
 } // namespace cagewright

@@ -21,10 +21,8 @@ struct Try {
 /// Tells what an envelope is worth by what becomes of it.
 class Drafts {
 public:
-  Drafts(const Ground& ground, const GenerateOptions& options, const EnvelopeOptions& wanted,
-         const Progress& progress)
-      : ground_(ground), wanted_(wanted), between_(ground.model_here(), progress),
-        draft_(ground.budget(options.clearance)) {
+  Drafts(const Ground& ground, const GenerateOptions& options, const EnvelopeOptions& wanted)
+      : ground_(ground), wanted_(wanted), draft_(ground.budget(options.clearance)) {
     draft_.draft = true;
     draft_.density = {}; // of other vertices, where the model is a half
   }
@@ -33,6 +31,7 @@ public:
     EnvelopeOptions options = wanted_;
     options.resolution = setting.resolution;
     options.closing = setting.closing;
+    options.fill = setting.fill;
     constexpr double enclosed = 0.3; // of the time
     Result<Envelope> start = envelope(ground_.model_here(), options, progress.part(0, enclosed));
     return start ? judged(setting, std::move(*start), progress.part(enclosed, 1)) : start.error();
@@ -44,7 +43,7 @@ public:
     if (!draft) {
       return draft.error();
     }
-    const double webbing = between_.share_inside(ground_.with_image(draft->cage));
+    const double webbing = ground_.between().share_inside(ground_.with_image(draft->cage));
     const Cost cost{!draft->report.reached,
                     draft->report.objective * dearer_by(webbing, start.genus, start.known)};
     return Try{setting, cost, std::move(start)};
@@ -53,7 +52,6 @@ public:
 private:
   const Ground& ground_;
   EnvelopeOptions wanted_;
-  SpaceBetween between_;
   ImproveOptions draft_;
 };
 
@@ -64,12 +62,13 @@ std::vector<EnvelopeSetting> rivals_of(const Envelope& first, int vertices) {
   for (const double factor : {1.0, 1.25, 1.75}) {
     const int resolution = static_cast<int>(std::lround(factor * coarse));
     if (resolution != first.resolution) {
-      rivals.push_back({resolution, 0});
+      rivals.push_back({resolution, 0, narrow_handle});
     }
   }
   if (first.genus > first.known || 8 * first.genus > vertices) {
-    rivals.push_back({static_cast<int>(std::lround(1.4 * coarse)), 0.02});
-    rivals.push_back({static_cast<int>(std::lround(coarse)), 0.1});
+    rivals.push_back({first.resolution, first.closing, wide_handle});
+    rivals.push_back({static_cast<int>(std::lround(1.4 * coarse)), 0.02, narrow_handle});
+    rivals.push_back({static_cast<int>(std::lround(coarse)), 0.1, narrow_handle});
   }
   return rivals;
 }
@@ -79,13 +78,13 @@ std::vector<EnvelopeSetting> rivals_of(const Envelope& first, int vertices) {
 Result<PromisingEnvelope> promising_envelope(const Ground& ground, const GenerateOptions& options,
                                              const EnvelopeOptions& wanted, Envelope first,
                                              const Progress& progress) {
-  const Drafts drafts(ground, options, wanted, progress);
+  const Drafts drafts(ground, options, wanted);
   const std::vector<EnvelopeSetting> rivals = rivals_of(first, wanted.vertices);
   const auto share = [&](std::size_t k) {
     const auto count = static_cast<double>(rivals.size() + 1);
     return progress.part(static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
   };
-  const EnvelopeSetting by_rule{first.resolution, first.closing};
+  const EnvelopeSetting by_rule{first.resolution, first.closing, wanted.fill};
   Result<Try> ruled = drafts.judged(by_rule, std::move(first), share(0));
   if (!ruled) {
     return ruled.error();

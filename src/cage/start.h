@@ -22,7 +22,13 @@ class Ground;
 struct EnvelopeSetting {
   int resolution = 0; ///< voxels along the model's diagonal; 0: chosen
   double closing = 0; ///< gaps narrower than twice this, in diagonals, are filled
+  double fill = 0;    ///< handles narrower than this, in diagonals, are filled: see EnvelopeOptions
 };
+
+/// Of EnvelopeSetting::fill: handles so narrow are filled in any case, as between fingers; those up
+/// to the other width, as between an arm and the trunk, where that makes the better cage.
+inline constexpr double narrow_handle = 0.05;
+inline constexpr double wide_handle = 0.3;
 
 /// What may differ between several starts of one cage.
 struct StartTry {

@@ -1,11 +1,13 @@
 #include "cage/box_cage.h"
 #include "cage/ground.h"
 #include "cage/start.h"
+#include "envelope/envelope.h"
 #include "mesh/shapes.h"
 #include "spatial/bvh.h"
 #include <cagewright/validate/validate_cage.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -41,6 +43,31 @@ Result<TriangleMesh> half_of(const TriangleMesh& united, const Ground& ground,
   return validity->valid() ? Result<TriangleMesh>(std::move(*half)) : no_start;
 }
 
+int genus_of(const TriangleMesh& closed) {
+  const auto euler =
+      static_cast<long>(closed.positions.size()) - static_cast<long>(closed.triangles.size() / 2);
+  return static_cast<int>(1 - euler / 2);
+}
+
+/// Boxes of parts that are near each other may touch where the parts do not: handles that go round
+/// nothing are filled, on a grid round the boxes. \returns nothing if they cannot be.
+std::optional<TriangleMesh> without_handles(const TriangleMesh& united, const Ground& ground,
+                                            int known, const Progress& progress) {
+  EnvelopeOptions options;
+  constexpr int fine = 64; // as boxes are made
+  constexpr double strictly = 1e-4;
+  options.resolution = fine;
+  options.fill = wide_handle;
+  options.own_handles = known;
+  options.vertices = std::numeric_limits<int>::max();
+  options.clearance = strictly;
+  options.half = ground.is_half();
+  options.diagonal = ground.diagonal();
+  const TriangleMesh here = ground.is_half() ? in_frame(united, ground.frame()) : united;
+  Result<Envelope> filled = envelope(here, options, progress);
+  return filled && filled->genus <= known ? std::optional(std::move(filled->mesh)) : std::nullopt;
+}
+
 } // namespace
 
 Result<Start> start_from_boxes(const Ground& ground, const GenerateOptions& options,
@@ -54,7 +81,14 @@ Result<Start> start_from_boxes(const Ground& ground, const GenerateOptions& opti
   Start start;
   start.method = Method::boxes_improved;
   start.surface = std::move(boxes->cage);
-  if (ground.is_half()) {
+  const std::optional<int> known = known_handles(ground.model());
+  std::optional<TriangleMesh> filled;
+  if (known && genus_of(start.surface) > *known) {
+    filled = without_handles(start.surface, ground, *known, progress.part(united, 1));
+  }
+  if (filled) {
+    start.surface = std::move(*filled);
+  } else if (ground.is_half()) {
     Result<TriangleMesh> half = half_of(start.surface, ground, progress.part(united, 1));
     if (!half) {
       return half.error();

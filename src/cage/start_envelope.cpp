@@ -12,6 +12,7 @@ Result<Start> start_from_envelope(const Ground& ground, const GenerateOptions& o
   EnvelopeOptions wanted;
   wanted.resolution = how.envelope.resolution;
   wanted.closing = how.envelope.closing;
+  wanted.fill = how.envelope.fill;
   wanted.clearance = options.clearance;
   for (const int vertices : {vertices_allowed(options), how.envelope_vertices}) {
     wanted.vertices = vertices > 0 ? vertices : wanted.vertices;
@@ -20,6 +21,7 @@ Result<Start> start_from_envelope(const Ground& ground, const GenerateOptions& o
   wanted.diagonal = ground.diagonal();
   constexpr double first = 0.2; // of the time
   const bool may_choose = is_open(options, how);
+  wanted.fill = may_choose ? narrow_handle : wanted.fill;
   Result<Envelope> made =
       envelope(ground.model_here(), wanted, progress.part(0, may_choose ? first : 1));
   if (!made) {

@@ -44,6 +44,30 @@ struct Made {
   std::optional<Vec3> farthest;
 };
 
+/// Triangles within a budget. Where webs are left it is tried again with webs dearer than other
+/// volume, and the better cage is taken: few vertices may be better spent elsewhere.
+Result<Triangles> triangles_without_webs(const Ground& ground, const Start& start,
+                                         ImproveOptions budget, const Progress& progress) {
+  const auto webbing_of = [&](const Triangles& made) {
+    return ground.between().share_inside(ground.with_image(made.improved.cage));
+  };
+  const auto cost_of = [&](const Triangles& made) {
+    const ImproveReport& report = made.improved.report;
+    return Cost{!report.reached, report.objective * dearer_by(webbing_of(made), 0, 0), 0};
+  };
+  constexpr double first = 0.8; // of the time
+  constexpr double hardly = 0.01;
+  BestOf<Triangles, decltype(cost_of)> tries(cost_of);
+  if (!tries.add(improve_well_shaped(ground, start.surface, budget, progress.part(0, first))) ||
+      !tries.best().improved.report.reached || !ground.runs().are_left() ||
+      webbing_of(tries.best()) < hardly) {
+    return tries.taken();
+  }
+  budget.between = &ground.between_on_side();
+  tries.add(improve_well_shaped(ground, start.surface, budget, progress.part(first, 1)));
+  return tries.taken();
+}
+
 Result<Made> triangles_on(const Ground& ground, const Start& start, const GenerateOptions& options,
                           const Progress& progress) {
   ImproveOptions budget = ground.budget(start.clearance);
@@ -61,7 +85,7 @@ Result<Made> triangles_on(const Ground& ground, const Start& start, const Genera
         progress.part(from == 0 ? 0 : usual, from == 0 && rings.count > 0 ? usual : 1);
     return options.max_gap > 0
                ? improve_to_gap(ground, start.surface, budget, options.max_gap, share)
-               : improve_well_shaped(ground, start.surface, budget, share);
+               : triangles_without_webs(ground, start, budget, share);
   };
   Result<Triangles> made = run(0);
   if (rings.count > 0 && made && !made->improved.report.reached) {
@@ -239,7 +263,10 @@ private:
     if (!is_within_budget(made.cage)) {
       return {true, static_cast<double>(made.cage.faces.positions.size()), 0};
     }
-    const double webbing = SpaceBetween(model_).share_inside(made.cage.triangles);
+    if (!between_) {
+      between_.emplace(model_);
+    }
+    const double webbing = between_->share_inside(made.cage.triangles);
     return {false, made.cage.objective * dearer_by(webbing, made.cage.genus, made.known), 0};
   }
 
@@ -263,6 +290,7 @@ private:
   EngineRuns runs_;
   std::optional<Ground> half_;
   std::optional<Ground> whole_;
+  mutable std::optional<SpaceBetween> between_; // made when it is first asked for
   BestOf<Surface, CostOf> best_of_;
   std::vector<StageTime> times_;
 };

@@ -1,5 +1,7 @@
 #include "envelope/envelope.h"
 
+#include "envelope/closing.h"
+#include "envelope/handles.h"
 #include "envelope/well_composed.h"
 #include "voxel/bridge.h"
 #include "voxel/mirrored_grid.h"
@@ -24,6 +26,7 @@ namespace {
 
 // The margin is a little more than the clearance: the surface of the voxels is then strictly clear.
 constexpr double margin_factor = 1.05;
+constexpr int vertices_for_a_handle = 8; // a cage needs to go round one
 
 double unit_of(TriangleView model, const EnvelopeOptions& options) {
   return options.diagonal > 0 ? options.diagonal : diagonal(model.positions);
@@ -77,79 +80,9 @@ TriangleMesh half_of(TriangleMesh mesh, double voxel) {
   return half;
 }
 
-// Adds to the set every voxel whose center is within `reach` voxels of the center of one in it.
-void grow(std::vector<std::uint8_t>& set, const std::array<int, 3>& dims, double reach) {
-  const auto nx = static_cast<std::size_t>(dims[0]);
-  const auto ny = static_cast<std::size_t>(dims[1]);
-  const auto nz = static_cast<std::size_t>(dims[2]);
-  // Separable squared distance, cut off at the reach: along x, then y, then z.
-  const int r = static_cast<int>(std::floor(reach));
-  const double far = reach * reach + 1;
-  std::vector<double> squared(set.size(), far);
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    squared[i] = set[i] != 0 ? 0 : far;
-  }
-  const std::array<std::size_t, 3> counts = {nx, ny, nz};
-  const std::array<std::size_t, 3> strides = {1, nx, nx * ny};
-  for (int k = 0; k < 3; ++k) {
-    std::vector<double> next(set.size(), far);
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      const auto at = static_cast<int>(i / strides[k] % counts[k]);
-      const int low = std::max(0, at - r);
-      const int high = std::min(static_cast<int>(counts[k]) - 1, at + r);
-      for (int j = low; j <= high; ++j) {
-        const double d = squared[i + strides[k] * static_cast<std::size_t>(j) -
-                                 strides[k] * static_cast<std::size_t>(at)] +
-                         (j - at) * (j - at);
-        next[i] = std::min(next[i], d);
-      }
-    }
-    squared = std::move(next);
-  }
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    set[i] = squared[i] <= reach * reach ? 1 : 0;
-  }
-}
-
-// A grid with `layers` more outer voxels on every side.
-VoxelGrid padded(const VoxelGrid& grid, int layers) {
-  VoxelGrid wide = grid;
-  for (int& d : wide.dims) {
-    d += 2 * layers;
-  }
-  wide.origin = grid.corner(-layers, -layers, -layers);
-  wide.kinds.assign(wide.index(0, 0, wide.dims[2]), VoxelKind::outer);
-  for (std::size_t i = 0; i < grid.kinds.size(); ++i) {
-    const auto [x, y, z] = grid.cell(i);
-    wide.kinds[wide.index(x + layers, y + layers, z + layers)] = grid.kinds[i];
-  }
-  return wide;
-}
-
-// Morphological closing: what a ball of that radius (in voxels) cannot enter from outside.
-void close_gaps(VoxelGrid& grid, double radius) {
-  grid = padded(grid, static_cast<int>(std::ceil(radius)) + 1);
-  std::vector<std::uint8_t> set(grid.kinds.size());
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    set[i] = grid.occupied(i) ? 1 : 0;
-  }
-  grow(set, grid.dims, radius);
-  for (std::uint8_t& s : set) {
-    s = s == 0 ? 1 : 0;
-  }
-  grow(set, grid.dims, radius);
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    if (set[i] == 0 && !grid.occupied(i)) {
-      grid.kinds[i] = VoxelKind::inner;
-    }
-  }
-}
-
-// The handles of a model of one closed piece, which no grid is likely to show fewer of. Of other
-// models nothing is known: 0.
-long known_handles(const SurfacePatches& patches, std::size_t positions) {
+std::optional<int> known_handles(const SurfacePatches& patches, std::size_t positions) {
   if (patches.closed.size() != 1 || !patches.closed[0]) {
-    return 0;
+    return std::nullopt;
   }
   std::vector<bool> used(positions, false);
   for (const Triangle& t : patches.triangles) {
@@ -157,7 +90,7 @@ long known_handles(const SurfacePatches& patches, std::size_t positions) {
   }
   const auto vertices = static_cast<long>(std::count(used.begin(), used.end(), true));
   const auto triangles = static_cast<long>(patches.triangles.size());
-  return 1 - (vertices - triangles / 2) / 2;
+  return static_cast<int>(1 - (vertices - triangles / 2) / 2);
 }
 
 Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches,
@@ -171,7 +104,9 @@ Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches
     return Error::cancelled();
   }
   if (options.closing > 0) {
-    close_gaps(*grid, options.closing * unit_of(model, options) / grid->size);
+    const double radius = options.closing * unit_of(model, options) / grid->size;
+    *grid = padded(*grid, layers_to_close(radius));
+    close_gaps(*grid, radius);
   }
   if (options.half) {
     mirror_occupied(*grid);
@@ -187,14 +122,20 @@ Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches
   if (progress.cancelled()) {
     return Error::cancelled();
   }
+  result.known = options.own_handles >= 0
+                     ? options.own_handles
+                     : known_handles(patches, model.positions.size()).value_or(0);
+  result.genus = genus_of(*grid);
+  const int wanted = std::min(result.known, options.vertices / vertices_for_a_handle);
+  if (options.fill > 0 && result.genus > wanted) {
+    const double widest = options.fill / 2 * unit_of(model, options) / grid->size;
+    result.genus = fill_handles(*grid, wanted, widest, options.half);
+    result.fill = options.fill;
+  }
   for (VoxelKind& kind : grid->kinds) {
     kind = kind == VoxelKind::outer ? kind : VoxelKind::feature;
   }
   result.mesh = to_triangle_mesh(voxel_boxes(*grid, {VoxelKind::feature}));
-  const auto euler = static_cast<long>(result.mesh.positions.size()) -
-                     static_cast<long>(result.mesh.triangles.size() / 2);
-  result.genus = static_cast<int>(1 - euler / 2);
-  result.known = static_cast<int>(known_handles(patches, model.positions.size()));
   if (options.half) {
     result.mesh = half_of(std::move(result.mesh), grid->size);
   }
@@ -202,6 +143,10 @@ Result<Envelope> at_resolution(TriangleView model, const SurfacePatches& patches
 }
 
 } // namespace
+
+std::optional<int> known_handles(TriangleView model) {
+  return known_handles(surface_patches(model), model.positions.size());
+}
 
 Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
                           const Progress& progress) {
@@ -222,16 +167,20 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
     return at_resolution(model, surface_patches(model), options, options.resolution, progress);
   }
   const SurfacePatches patches = surface_patches(model);
-  const long handles = known_handles(patches, model.positions.size());
+  const int handles = options.own_handles >= 0
+                          ? options.own_handles
+                          : known_handles(patches, model.positions.size()).value_or(0);
   // A handle costs vertices and is rarely the model's own when a finer grid does not show it. Of
   // the first few resolutions with the least genus the coarsest is taken, or the first that shows
   // no more handles than the model has.
   const double least = std::clamp(3.2 * std::sqrt(options.vertices), 24.0, 64.0);
   std::optional<Envelope> best;
+  EnvelopeOptions bare = options; // what is filled tells nothing
+  bare.fill = 0;
   constexpr std::array<double, 5> factors = {1, 1.2, 1.45, 1.75, 2.1};
   for (std::size_t i = 0; i < factors.size(); ++i) {
     Result<Envelope> next = at_resolution(
-        model, patches, options, static_cast<int>(std::lround(least * factors[i])),
+        model, patches, bare, static_cast<int>(std::lround(least * factors[i])),
         progress.part(0.1 * static_cast<double>(i), 0.1 * static_cast<double>(i + 1)));
     if (!next) {
       return next;
@@ -244,9 +193,8 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
     }
   }
   // More handles than the vertices can go round: the narrowest are filled.
-  constexpr int vertices_for_a_handle = 8;
   constexpr std::array<double, 4> closings = {0.01, 0.02, 0.035, 0.06};
-  EnvelopeOptions closed = options;
+  EnvelopeOptions closed = bare;
   for (std::size_t i = 0;
        i < closings.size() && vertices_for_a_handle * best->genus > options.vertices; ++i) {
     closed.closing = std::max(options.closing, closings[i]);
@@ -259,6 +207,11 @@ Result<Envelope> envelope(TriangleView model, const EnvelopeOptions& options,
     if (next->genus < best->genus) {
       best = std::move(*next);
     }
+  }
+  if (options.fill > 0 && best->genus > handles) {
+    EnvelopeOptions filled = options;
+    filled.closing = best->closing;
+    return at_resolution(model, patches, filled, best->resolution, progress.part(0.9, 1));
   }
   return *std::move(best);
 }

@@ -6,6 +6,8 @@
 #include <cagewright/core/result.h>
 #include <cagewright/mesh/triangle_mesh.h>
 
+#include <optional>
+
 namespace cagewright {
 
 struct EnvelopeOptions {
@@ -17,6 +19,12 @@ struct EnvelopeOptions {
   double clearance = 0.002; ///< least distance to the model, in diagonals of its bounding box
   /// Holes and gaps narrower than twice this, in diagonals, are filled.
   double closing = 0;
+  /// Handles that the model does not have itself, and those that so few vertices cannot go round,
+  /// are filled with thin skins if a ball of this diameter, in diagonals, cannot get through. 0:
+  /// none are.
+  double fill = 0;
+  /// The handles that the model has itself. Below 0: known_handles(), or 0.
+  int own_handles = -1;
   /// Make the envelope of the model and its mirror image in the plane x = 0, and return the half of
   /// it at x >= 0: open, the boundary on the plane exactly, no face in it, and no edge of two faces
   /// between two vertices of the plane.
@@ -30,10 +38,15 @@ struct Envelope {
   TriangleMesh mesh;
   int resolution = 0; ///< voxels along the model's diagonal
   double closing = 0; ///< that was needed: see EnvelopeOptions
+  double fill = 0;    ///< the same
   int genus = 0;      ///< handles of the whole surface
   int known = 0;      ///< handles of the model itself, if it is one closed piece
   int bridges = 0;    ///< rods of voxels added to join the model's pieces
 };
+
+/// The handles of a model of one closed piece, which no grid is likely to show fewer of. Of other
+/// models nothing is known.
+std::optional<int> known_handles(TriangleView model);
 
 /// The outer boundary of the voxels that come within the clearance of the model or lie inside it:
 /// one closed, manifold surface, oriented outward, that keeps the clearance everywhere and encloses

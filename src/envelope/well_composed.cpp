@@ -36,6 +36,17 @@ bool is_well_composed(Block set) {
   return hangs_together(set) && hangs_together(~set & 0xffU);
 }
 
+Block block_at(const VoxelGrid& grid, int i, int j, int k) {
+  Block set = 0;
+  for (Block b = 0; b < 8; ++b) {
+    set |= static_cast<Block>(grid.occupied(grid.index(i + static_cast<int>(b & 1U),
+                                                       j + static_cast<int>(b >> 1U & 1U),
+                                                       k + static_cast<int>(b >> 2U))))
+           << b;
+  }
+  return set;
+}
+
 // For every block the smallest well-composed one that contains it.
 std::array<std::uint8_t, 256> repairs() {
   std::array<std::uint8_t, 256> table{};
@@ -94,6 +105,10 @@ std::size_t fill_cavities(VoxelGrid& grid) {
   return filled;
 }
 
+bool is_well_composed(const VoxelGrid& grid, int i, int j, int k) {
+  return is_well_composed(block_at(grid, i, j, k));
+}
+
 std::size_t make_well_composed(VoxelGrid& grid) {
   static const std::array<std::uint8_t, 256> repair = repairs();
   std::size_t filled = 0;
@@ -102,13 +117,7 @@ std::size_t make_well_composed(VoxelGrid& grid) {
     for (int k = 0; k + 1 < grid.dims[2]; ++k) {
       for (int j = 0; j + 1 < grid.dims[1]; ++j) {
         for (int i = 0; i + 1 < grid.dims[0]; ++i) {
-          Block set = 0;
-          for (Block b = 0; b < 8; ++b) {
-            set |= static_cast<Block>(grid.occupied(grid.index(i + static_cast<int>(b & 1U),
-                                                               j + static_cast<int>(b >> 1U & 1U),
-                                                               k + static_cast<int>(b >> 2U))))
-                   << b;
-          }
+          const Block set = block_at(grid, i, j, k);
           const Block add = repair[set] & ~set;
           for (Block b = 0; b < 8; ++b) {
             if ((add >> b & 1U) != 0) {

@@ -49,6 +49,7 @@ ObjectiveWeights weights_for(TriangleView start, TriangleView model, const Impro
     weights.square = std::max(weights.square, at_gap / options.max_gap);
   }
   weights.shape = options.shape;
+  weights.between = options.between;
   weights.typical_area = surface_area(start) / (2.0 * static_cast<double>(budget));
   weights.typical_area *= options.extent == CageExtent::half ? 2 : 1;
   set_emphasis(weights, model, options.density);
@@ -92,7 +93,12 @@ public:
     }
     result.report.refine_seconds = seconds_since(middle);
     const double sides = cage_.mesh.is_half() ? 2 : 1;
-    result.report.objective = sides * value / maths::cube(surface_.diagonal);
+    double plain = value; // comparable with cages that were made without regard to webs
+    if (options_.between != nullptr) {
+      objective_.allow_webs();
+      plain = objective_.total(cage_.mesh);
+    }
+    result.report.objective = sides * plain / maths::cube(surface_.diagonal);
     result.report.reached = cage_.mesh.vertex_count() <= budget_;
     if (!result.report.reached) {
       result.report.why_not =

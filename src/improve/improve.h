@@ -14,6 +14,7 @@
 
 namespace cagewright {
 
+class SpaceBetween;
 struct ModelSurface;
 
 struct ImproveOptions {
@@ -49,6 +50,10 @@ struct ImproveOptions {
   double max_gap = 0;
   /// What lengths are fractions of. 0: the diagonal of the model's box.
   double diagonal = 0;
+  /// The space between the model's limbs, that the cage is to keep out of even where that costs
+  /// tightness elsewhere; of half a cage that at x > 0. Null: webs count as other volume does. Must
+  /// live as long as the call.
+  const SpaceBetween* between = nullptr;
   /// The part that each face of the start belongs to, or empty. The edges between two parts, which
   /// have to be loops without common vertices, stay loops of edges of the cage, with four of them
   /// at least: rings round limbs. The view must live as long as the call.
@@ -60,7 +65,7 @@ struct ImproveOptions {
 struct ImproveReport {
   bool reached = false; ///< the budget was met
   std::string why_not;  ///< a sentence, if it was not
-  double objective = 0; ///< of the result, as in objective.h, in diagonals cubed
+  double objective = 0; ///< of the result, as in objective.h, without webbing, in diagonals cubed
   double simplify_seconds = 0;
   double refine_seconds = 0;
 };

@@ -78,7 +78,7 @@ double Objective::face(const Corners& t) const {
     sum += node.weight * gap(nearest(p));
   }
   const double x = shape_defect(t);
-  return triangle_area(t) * sum + shape_weight() * x * x;
+  return triangle_area(t) * sum + shape_weight() * x * x + webbing(t);
 }
 
 double Objective::sampled_gap(const Corners& t) const {

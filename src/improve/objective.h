@@ -2,9 +2,11 @@
 /// What makes one cage better than another, in one number.
 #pragma once
 
+#include "core/maths.h"
 #include "improve/guard.h"
 #include <cagewright/core/progress.h>
 #include <cagewright/mesh/measures.h>
+#include <cagewright/validate/webbing.h>
 
 #include <limits>
 #include <span>
@@ -16,7 +18,8 @@ namespace cagewright {
 /// integral over its faces of d + square * d^2 / D (d the distance to the model, D the model's
 /// diagonal), plus shape * D * area * x^2 for each face, x = (a^2 + b^2 + c^2) / (4 sqrt(3) A) - 1
 /// for a face of sides a, b, c and area A: zero when equilateral, about 6 when 2 r / R = 0.15,
-/// large for needles.
+/// large for needles. Plus webbing * the volume of the space between limbs that is inside the cage,
+/// counted in points: a web between two legs has hardly any volume.
 ///
 /// Where the model has an emphasis w, at the nearest of its triangles, a gap counts w times: the
 /// integrand there is (2 w - 1) d + w square d^2 / D, the volume having been counted once.
@@ -26,6 +29,9 @@ struct ObjectiveWeights {
   double typical_area = 0;           ///< `area` above, in the model's units: that of a typical face
   std::vector<double> emphasis = {}; ///< of each triangle of the model, >= 1; none: 1 everywhere
   double typical_emphasis = 1;       ///< that of a typical place
+  /// What is between limbs, or nothing; lives as long as the objective.
+  const SpaceBetween* between = nullptr;
+  double webbing = 30; ///< how many times its volume counts
   /// No step may leave a face of the cage farther than this from the model at any of a few samples,
   /// unless it brings it much nearer than it was: in the model's units.
   double most_gap = std::numeric_limits<double>::infinity();
@@ -76,7 +82,8 @@ public:
     return model_->tree.nearest(p, std::numeric_limits<double>::infinity(), error);
   }
 
-  /// A face's own part: the integral of the gap, by three nearest points, and the shape.
+  /// A face's own part: the integral of the gap, by three nearest points, the shape, and its share
+  /// of the webbing, which adds up over a closed surface.
   [[nodiscard]] double face(const Corners& t) const;
 
   /// The greatest distance to the model at fifteen points of the triangle, its corners among them.
@@ -88,6 +95,15 @@ public:
   /// The same for a face that moves.
   [[nodiscard]] bool widens_gap(const Corners& before, const Corners& after) const;
 
+  /// Of the webbing.
+  [[nodiscard]] double webbing(const Corners& t) const {
+    return weights_.between == nullptr
+               ? 0
+               : weights_.webbing * maths::cube(weights_.between->voxel()) *
+                     static_cast<double>(weights_.between->behind({t[0], t[1], t[2]}));
+  }
+
+  void allow_webs() { weights_.between = nullptr; }
   void limit_gap(double most_gap) { weights_.most_gap = most_gap; }
   void weigh_shape(double shape) { weights_.shape = shape; }
 

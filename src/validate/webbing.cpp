@@ -354,6 +354,30 @@ std::vector<Vec3> SpaceBetween::points() const {
   return result;
 }
 
+SpaceBetween SpaceBetween::right_half() const {
+  SpaceBetween half;
+  if (count_ == 0) {
+    return half;
+  }
+  half.corner_ = corner_;
+  half.size_ = size_;
+  half.rows_ = rows_;
+  half.first_.assign(1, 0);
+  half.narrow_before_.assign(1, 0);
+  for (std::size_t r = 0; r + 1 < first_.size(); ++r) {
+    for (std::size_t i = first_[r]; i < first_[r + 1]; ++i) {
+      if (places_[i] > 0) {
+        half.places_.push_back(places_[i]);
+        half.narrow_before_.push_back(half.narrow_before_.back() + narrow_before_[i + 1] -
+                                      narrow_before_[i]);
+      }
+    }
+    half.first_.push_back(half.places_.size());
+  }
+  half.count_ = half.places_.size();
+  return half;
+}
+
 SpaceBetween::Count SpaceBetween::behind_of(const std::array<Vec3, 3>& t) const {
   Count sum;
   if (count_ == 0) {

@@ -49,6 +49,26 @@ TEST(SpaceBetween, KnowsWhatIsJoined) {
   EXPECT_NEAR(space.share_inside(sheet), 0.35, 0.1);
 }
 
+TEST(SpaceBetween, OfAHalfIsWhatLiesOnItsSide) {
+  const SpaceBetween space(trousers());
+  const SpaceBetween half = space.right_half();
+  const std::vector<Vec3> points = space.points();
+  EXPECT_EQ(half.count(), static_cast<std::size_t>(std::ranges::count_if(
+                              points, [](const Vec3& p) { return p.x() > 0; })));
+  EXPECT_GT(half.count(), 50U);
+  for (const Vec3& p : half.points()) {
+    EXPECT_GT(p.x(), 0);
+  }
+  // Half a surface, open on the plane: what it is open to is not counted.
+  TriangleMesh box = bar({0, -1, -1}, {4, 3, 19});
+  std::erase_if(box.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](Index v) { return box.positions[v].x() == 0; });
+  });
+  EXPECT_EQ(box.triangles.size(), 10U);
+  EXPECT_EQ(half.share_inside(box), 1);
+  EXPECT_EQ(SpaceBetween().right_half().count(), 0U);
+}
+
 TEST(SpaceBetween, SeesSheetsBetweenTheTipsOfSpreadArms) {
   // Eight arms of a length of 10 all round, as of an octopus: between two tips the gap is a quarter
   // of the diagonal, and the way round it 2.6 times as long.

@@ -39,6 +39,9 @@ public:
   [[nodiscard]] double voxel() const { return size_; }       ///< length of their voxels' edges
   [[nodiscard]] std::vector<Vec3> points() const;
 
+  /// Those at x > 0: between the limbs of half a symmetric model.
+  [[nodiscard]] SpaceBetween right_half() const;
+
   /// How many points lie on the side of the triangle from where the x axis comes, in line with it:
   /// positive if its normal points along the axis, else negative. The sum over the faces of a
   /// closed surface, oriented outward, is the number of points inside.
