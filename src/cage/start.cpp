@@ -3,6 +3,7 @@
 #include "cage/budget.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace cagewright {
@@ -46,6 +47,14 @@ std::vector<StartTry> starts_of_fewer_handles(const GenerateOptions& options) {
   starts[0].envelope_vertices = std::max(none, vertices_allowed(options) / 2);
   starts[1].envelope_vertices = none;
   return starts;
+}
+
+StartTry start_of_finer_voxels(const GenerateOptions& options, int resolution) {
+  constexpr double finer = 1.75;
+  StartTry start = first_start(options);
+  start.envelope.resolution = static_cast<int>(std::lround(finer * resolution));
+  start.envelope.fill = narrow_handle;
+  return start;
 }
 
 Result<Start> make_start(const Ground& ground, const GenerateOptions& options, const StartTry& how,

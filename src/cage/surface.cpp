@@ -31,7 +31,8 @@ constexpr double limbs_found = 0.05; // of the improvement
 /// A checked cage, and what is known of its start alone.
 struct Surface {
   GeneratedCage cage;
-  int known = 0; ///< see Start
+  int known = 0;      ///< see Start
+  double webbing = 0; ///< SpaceBetween::share_inside()
   std::optional<StartTry> rival;
 };
 
@@ -56,11 +57,10 @@ Result<Triangles> triangles_without_webs(const Ground& ground, const Start& star
     return Cost{!report.reached, report.objective * dearer_by(webbing_of(made), 0, 0), 0};
   };
   constexpr double first = 0.8; // of the time
-  constexpr double hardly = 0.01;
   BestOf<Triangles, decltype(cost_of)> tries(cost_of);
   if (!tries.add(improve_well_shaped(ground, start.surface, budget, progress.part(0, first))) ||
       !tries.best().improved.report.reached || !ground.runs().are_left() ||
-      webbing_of(tries.best()) < hardly) {
+      webbing_of(tries.best()) < webbed) {
     return tries.taken();
   }
   budget.between = &ground.between_on_side();
@@ -193,6 +193,7 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
   }
   add_remarks(cage, *start, *made, options);
   surface.known = start->known;
+  surface.webbing = ground.between().share_inside(ground.with_image(to_triangle_mesh(made->faces)));
   surface.rival = start->rival;
   return surface;
 }
@@ -201,7 +202,7 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
 class Tries {
 public:
   Tries(TriangleView model, const GenerateOptions& options, const Mirroring& mirroring)
-      : model_(model), options_(options), mirroring_(mirroring), best_of_(CostOf{*this}) {}
+      : model_(model), options_(options), mirroring_(mirroring), best_of_(cost_of) {}
   Tries(const Tries&) = delete;
   Tries& operator=(const Tries&) = delete;
 
@@ -253,21 +254,12 @@ public:
   }
 
 private:
-  struct CostOf {
-    const Tries& tries;
-    Cost operator()(const Surface& made) const { return tries.cost_of(made); }
-  };
-
   /// Beyond the budget the smallest is the best.
-  [[nodiscard]] Cost cost_of(const Surface& made) const {
+  static Cost cost_of(const Surface& made) {
     if (!is_within_budget(made.cage)) {
       return {true, static_cast<double>(made.cage.faces.positions.size()), 0};
     }
-    if (!between_) {
-      between_.emplace(model_);
-    }
-    const double webbing = between_->share_inside(made.cage.triangles);
-    return {false, made.cage.objective * dearer_by(webbing, made.cage.genus, made.known), 0};
+    return {false, made.cage.objective * dearer_by(made.webbing, made.cage.genus, made.known), 0};
   }
 
   bool add(Result<Surface> made) {
@@ -290,8 +282,7 @@ private:
   EngineRuns runs_;
   std::optional<Ground> half_;
   std::optional<Ground> whole_;
-  mutable std::optional<SpaceBetween> between_; // made when it is first asked for
-  BestOf<Surface, CostOf> best_of_;
+  BestOf<Surface, decltype(&cost_of)> best_of_;
   std::vector<StageTime> times_;
 };
 
@@ -325,6 +316,16 @@ Result<GeneratedCage> make_surface(TriangleView model, const GenerateOptions& op
     return tries.taken();
   }
   double done = usual;
+  const Surface& best = tries.best();
+  if (best.cage.method == Method::envelope && is_within_budget(best.cage) &&
+      best.webbing >= webbed && tries.may_go_on()) {
+    const double then = (done + 1) / 2;
+    if (!tries.make_beside_best(start_of_finer_voxels(options, best.cage.resolution),
+                                progress.part(done, then))) {
+      return tries.taken();
+    }
+    done = then;
+  }
   for (const StartTry& simpler : starts_of_fewer_handles(options)) {
     const double then = (done + 1) / 2;
     if (is_enough() || tries.best().cage.genus == 0 ||
