@@ -43,26 +43,10 @@ struct cw_sparse {
 
 namespace {
 
-/// A message without the dashes that options have on the command line, and nowhere else.
-std::string without_dashes(const std::string& message) {
-  std::string text;
-  for (std::size_t i = 0; i < message.size(); ++i) {
-    const bool is_word = i == 0 || message[i - 1] == ' ';
-    if (is_word && message.compare(i, 2, "--") == 0) {
-      ++i;
-    } else {
-      text += message[i];
-    }
-  }
-  return text;
-}
-
 /// A kind of coordinates by name, and its settings: "quads=diagonal outside=rest".
 Result<CoordinateSettings> coordinates_named(const char* kind, const char* settings) {
-  const Result<CoordinateSettings> named =
-      CoordinateSettings::parse(kind != nullptr ? kind : CoordinateSettings().kind().name,
-                                settings != nullptr ? settings : "");
-  return named ? named : Error{named.error().code, without_dashes(named.error().message)};
+  return CoordinateSettings::parse(kind != nullptr ? kind : CoordinateSettings().kind().name,
+                                   settings != nullptr ? settings : "");
 }
 
 /// Is shown the weights of some points, of which the first has this number.

@@ -30,7 +30,7 @@ Status set_given(const CoordinateArguments& arguments, CoordinateSettings& setti
       warn(fmt::format("--{} makes no difference to {} coordinates; it is for {}", name,
                        settings.name(), kinds_with(name)));
     } else if (Status status = settings.set(name, value.text); !status) {
-      return status;
+      return Error{status.error().code, "--" + status.error().message};
     }
   }
   return success();

@@ -216,10 +216,10 @@ Status CoordinateSettings::set(std::string_view option, std::string_view value) 
   if (!index) {
     std::string options;
     for (const CoordinateOption* own : kind_->options) {
-      options += options.empty() ? " --" : ", --";
+      options += options.empty() ? " " : ", ";
       options += own->name;
     }
-    return Error{ErrorCode::invalid_option, "--" + std::string(option) + ": " +
+    return Error{ErrorCode::invalid_option, std::string(option) + ": " +
                                                 std::string(kind_->name) +
                                                 " coordinates have no such option, but" +
                                                 (options.empty() ? std::string(" none") : options)};
@@ -227,7 +227,7 @@ Status CoordinateSettings::set(std::string_view option, std::string_view value) 
   const CoordinateOption& known = *kind_->options[*index];
   const auto number = parsed(known, value);
   if (!number) {
-    return Error{ErrorCode::invalid_option, "--" + std::string(option) + ": '" +
+    return Error{ErrorCode::invalid_option, std::string(option) + ": '" +
                                                 std::string(value) + "' is not allowed; give " +
                                                 values_of(known)};
   }

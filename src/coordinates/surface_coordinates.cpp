@@ -47,7 +47,7 @@ TileReport FramedCoordinates::solve_tile(std::span<const Vec3> points, std::span
 Result<OutsideTreatment> outside_without_continuation(const CoordinateSettings& settings) {
   const auto outside = static_cast<OutsideTreatment>(settings.choice(outside_option));
   if (outside == OutsideTreatment::continuation) {
-    return Error{ErrorCode::invalid_option, "--outside: " + std::string(settings.kind().name) +
+    return Error{ErrorCode::invalid_option, "outside: " + std::string(settings.kind().name) +
                                                 " coordinates cannot be continued outside the "
                                                 "cage; give error or rest"};
   }

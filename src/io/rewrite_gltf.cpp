@@ -176,7 +176,7 @@ Error flattened(const Source& source, const GltfPlacement& placement, std::size_
              : source.error(where + ": " + counted(count, "vertex") + " (the first is " +
                                 std::to_string(first) +
                                 ") cannot be moved there, because the joints flatten the mesh; "
-                                "deform the bind pose (--pose bind), or write OBJ",
+                                "deform the bind pose, or write OBJ",
                             ErrorCode::unsupported);
 }
 

@@ -100,7 +100,7 @@ TEST(CoordinateSettings, SayWhatIsAllowed) {
   CoordinateSettings settings;
   Status status = settings.set("quads", "both");
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().message, "--quads: 'both' is not allowed; give center|diagonal");
+  EXPECT_EQ(status.error().message, "quads: 'both' is not allowed; give center|diagonal");
   status = settings.set("teapot", "1");
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().message,

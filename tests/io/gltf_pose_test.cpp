@@ -297,7 +297,7 @@ TEST(GltfRewritten, RefusesWhatJointsFlattenAndTheRemedyWorks) {
   rig.file.nodes = R"([{"mesh":0,"skin":0},{"children":[2,3]},{},{"rotation":[0,0,1,0]}])";
   const Rewritten out("a.glb", rig.glb(), Pose::shown, bend);
   EXPECT_NE(out.message.find("node 0: 1 vertex (the first is 2) cannot be moved there, because the "
-                             "joints flatten the mesh; deform the bind pose (--pose bind), or "
+                             "joints flatten the mesh; deform the bind pose, or "
                              "write OBJ"),
             std::string::npos)
       << out.message;

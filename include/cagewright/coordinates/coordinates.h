@@ -61,8 +61,8 @@ public:
   /// What happens to points outside the cage; `error` is for who meets the points, see accept().
   [[nodiscard]] OutsideTreatment outside() const { return outside_; }
 
-  /// No weight inside the cage errs by more than this, as is proven, of kinds that come near what
-  /// they are named after by a computation that ends somewhere; 0 for the others.
+  /// How far weights inside the cage err at most, as measured at samples of the cage, of kinds that
+  /// come near what they are named after by a computation that ends somewhere; 0 for the others.
   [[nodiscard]] virtual double error_bound() const { return 0; }
 
   /// Of these kinds: how far weights a hundredth of the cage's diagonal inside it, or farther, err
