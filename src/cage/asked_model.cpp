@@ -15,7 +15,7 @@ namespace {
 
 std::string rounded(double value) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
+  std::snprintf(text.data(), text.size(), value < 100 ? "%.3g" : "%.0f", value);
   return text.data();
 }
 
@@ -26,11 +26,7 @@ Result<AskedModel> without_specks(const PolygonMesh& model, std::span<const doub
   if (!specks) {
     return specks.error();
   }
-  std::vector<bool> is_kept;
-  for (std::size_t f = 0; f < model.face_count(); ++f) {
-    is_kept.push_back(!specks->of_vertex[model.face(f).front()]);
-  }
-  MeshPart rest = part_of(model, is_kept);
+  MeshPart rest = part_of(model, specks->faces_in_none(model));
   AskedModel asked;
   asked.mesh = std::move(rest.mesh);
   if (!density.empty()) {

@@ -297,8 +297,9 @@ Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& option
   if (is_model_changed(options)) {
     return generate_for_asked(model, options, progress);
   }
+  // What is unfit for voxels is refused below, by who can say more of it.
   const Result<Specks> specks = find_specks(model, progress.quiet());
-  if (!specks) {
+  if (!specks && specks.error().code == ErrorCode::cancelled) {
     return specks.error();
   }
   // Of the time; the figures come after. Boxes are made soon.
@@ -314,7 +315,7 @@ Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& option
   if (made->box_tree) {
     made->boxes = boxes_of(*made->box_tree);
   }
-  finish_remarks(*made, *specks);
+  finish_remarks(*made, specks ? *specks : Specks());
   made->figures = measure_cage(made->faces, model, {}, progress.part(made_by, 1));
   if (progress.cancelled()) {
     return Error::cancelled();

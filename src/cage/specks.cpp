@@ -73,6 +73,14 @@ ModelPart rest_of(TriangleView model, const std::vector<bool>& is_speck) {
 
 } // namespace
 
+std::vector<bool> Specks::faces_in_none(const PolygonMesh& model) const {
+  std::vector<bool> faces;
+  for (std::size_t f = 0; f < model.face_count(); ++f) {
+    faces.push_back(!of_vertex[model.face(f).front()]);
+  }
+  return faces;
+}
+
 Result<Specks> find_specks(TriangleView model, const Progress& progress) {
   Specks specks;
   specks.of_vertex.assign(model.positions.size(), false);
@@ -118,14 +126,7 @@ Result<Specks> find_specks(TriangleView model, const Progress& progress) {
 
 Result<std::vector<bool>> faces_in_no_speck(const PolygonMesh& model, const Progress& progress) {
   const Result<Specks> specks = find_specks(to_triangle_mesh(model), progress);
-  if (!specks) {
-    return specks.error();
-  }
-  std::vector<bool> faces;
-  for (std::size_t f = 0; f < model.face_count(); ++f) {
-    faces.push_back(!specks->of_vertex[model.face(f).front()]);
-  }
-  return faces;
+  return specks ? specks->faces_in_none(model) : Result<std::vector<bool>>(specks.error());
 }
 
 } // namespace cagewright

@@ -3,6 +3,7 @@
 #include "cage/start.h"
 #include "envelope/envelope.h"
 #include "mesh/shapes.h"
+#include "mesh/topology.h"
 #include "spatial/bvh.h"
 #include <cagewright/validate/validate_cage.h>
 
@@ -43,12 +44,6 @@ Result<TriangleMesh> half_of(const TriangleMesh& united, const Ground& ground,
   return validity->valid() ? Result<TriangleMesh>(std::move(*half)) : no_start;
 }
 
-int genus_of(const TriangleMesh& closed) {
-  const auto euler =
-      static_cast<long>(closed.positions.size()) - static_cast<long>(closed.triangles.size() / 2);
-  return static_cast<int>(1 - euler / 2);
-}
-
 /// Boxes of parts that are near each other may touch where the parts do not: handles that go round
 /// nothing are filled, on a grid round the boxes. \returns nothing if they cannot be.
 std::optional<TriangleMesh> without_handles(const TriangleMesh& united, const Ground& ground,
@@ -83,7 +78,7 @@ Result<Start> start_from_boxes(const Ground& ground, const GenerateOptions& opti
   start.surface = std::move(boxes->cage);
   const std::optional<int> known = known_handles(ground.model());
   std::optional<TriangleMesh> filled;
-  if (known && genus_of(start.surface) > *known) {
+  if (known && topology(TriangleView(start.surface)).genus.value_or(0) > *known) {
     filled = without_handles(start.surface, ground, *known, progress.part(united, 1));
   }
   if (filled) {

@@ -219,17 +219,15 @@ Status CoordinateSettings::set(std::string_view option, std::string_view value) 
       options += options.empty() ? " " : ", ";
       options += own->name;
     }
-    return Error{ErrorCode::invalid_option, std::string(option) + ": " +
-                                                std::string(kind_->name) +
+    return Error{ErrorCode::invalid_option, std::string(option) + ": " + std::string(kind_->name) +
                                                 " coordinates have no such option, but" +
                                                 (options.empty() ? std::string(" none") : options)};
   }
   const CoordinateOption& known = *kind_->options[*index];
   const auto number = parsed(known, value);
   if (!number) {
-    return Error{ErrorCode::invalid_option, std::string(option) + ": '" +
-                                                std::string(value) + "' is not allowed; give " +
-                                                values_of(known)};
+    return Error{ErrorCode::invalid_option, std::string(option) + ": '" + std::string(value) +
+                                                "' is not allowed; give " + values_of(known)};
   }
   values_[*index] = *number;
   return success();

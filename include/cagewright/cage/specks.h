@@ -20,6 +20,9 @@ struct Specks {
   std::size_t triangles = 0;   ///< of them
   Vec3 place = Vec3::Zero();   ///< a vertex of the first
   double enlargement = 1;      ///< the diagonal of the model's box, over that of the rest
+
+  /// Of each of the F faces of the model, whether it is in no speck.
+  [[nodiscard]] std::vector<bool> faces_in_none(const PolygonMesh& model) const;
 };
 
 /// Finds what scans and exports leave in space: specks of dust, a triangle or a vertex at a
@@ -36,7 +39,7 @@ struct Specks {
 /// magnitude that specks are away, where there is more than one piece.
 Result<Specks> find_specks(TriangleView model, const Progress& progress = {});
 
-/// Of each of the F faces of a model, whether it is in no speck.
+/// Of each of the F faces of a model, whether it is in no speck: see Specks::faces_in_none().
 /// Errors, cost: those of find_specks().
 Result<std::vector<bool>> faces_in_no_speck(const PolygonMesh& model,
                                             const Progress& progress = {});
