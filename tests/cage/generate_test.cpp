@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 #include <string>
 #include <string_view>
@@ -95,6 +96,16 @@ TEST(Generate, TellsWhatIsNotAsAskedFor) {
   ASSERT_TRUE(plain) << plain.error().message;
   EXPECT_TRUE(plain->is_as_asked()); // automatic: if the model is its own mirror image
   EXPECT_EQ(plain->mirror.has_value(), plain->remarks.empty());
+}
+
+TEST(Generate, NamesTheVertexThatIsNowhere) {
+  TriangleMesh model = joined(make_cube(), make_tetrahedron()); // pieces are looked at first
+  model.positions[9].y() = std::numeric_limits<double>::quiet_NaN();
+  const Result<GeneratedCage> made = generate(model, quick(30));
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::unfit_model);
+  EXPECT_TRUE(made.error().message.starts_with("vertex 9 of the model has a coordinate"))
+      << made.error().message;
 }
 
 TEST(Generate, RefusesWhatIsOutOfRange) {

@@ -1,0 +1,34 @@
+#include "support/models.h"
+#include <cagewright/cage/generate.h>
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace cagewright {
+namespace {
+
+// Its legs stand so near each other that voxels join them, or not, as it is turned.
+class FreeLimbs : public testing::TestWithParam<double> {};
+
+TEST_P(FreeLimbs, OfAFigureHoweverItIsTurned) {
+  auto model = test::real_model({"rigged_figure.glb"});
+  if (!model) {
+    GTEST_SKIP() << "no rigged_figure.glb in the folder that CAGEWRIGHT_MODELS names";
+  }
+  const Mat3 turn =
+      Eigen::AngleAxisd(GetParam() * std::numbers::pi / 180, Vec3(1, 2, 3).normalized())
+          .toRotationMatrix();
+  for (Vec3& p : model->positions) {
+    p = turn * p;
+  }
+  const Result<GeneratedCage> made = generate(*model);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(made->is_as_asked());
+  EXPECT_LT(made->figures.webbing, 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, FreeLimbs, testing::Values(0.0, 37.0, 200.0));
+
+} // namespace
+} // namespace cagewright
