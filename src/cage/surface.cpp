@@ -198,6 +198,13 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
   return surface;
 }
 
+/// Whether limbs are joined that finer voxels may set free. Where handles of the model had to be
+/// filled to keep to the budget, finer voxels would only bring them back.
+bool may_finer_voxels_help(const Surface& made) {
+  return made.cage.method == Method::envelope && is_within_budget(made.cage) &&
+         made.webbing >= webbed && made.cage.genus >= made.known;
+}
+
 /// Makes one surface after another, and keeps the best.
 class Tries {
 public:
@@ -316,11 +323,10 @@ Result<GeneratedCage> make_surface(TriangleView model, const GenerateOptions& op
     return tries.taken();
   }
   double done = usual;
-  const Surface& best = tries.best();
-  if (best.cage.method == Method::envelope && is_within_budget(best.cage) &&
-      best.webbing >= webbed && tries.may_go_on()) {
+  if (may_finer_voxels_help(tries.best()) && tries.may_go_on()) {
     const double then = (done + 1) / 2;
-    if (!tries.make_beside_best(start_of_finer_voxels(options, best.cage.resolution),
+    const int resolution = tries.best().cage.resolution;
+    if (!tries.make_beside_best(start_of_finer_voxels(options, resolution),
                                 progress.part(done, then))) {
       return tries.taken();
     }
