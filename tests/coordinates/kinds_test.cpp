@@ -104,7 +104,7 @@ TEST(CoordinateSettings, SayWhatIsAllowed) {
   status = settings.set("teapot", "1");
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().message,
-            "--teapot: mean_value coordinates have no such option, but --quads");
+            "teapot: mean_value coordinates have no such option, but quads");
 }
 
 /// A kind takes no more than this, and a line in the registry.
