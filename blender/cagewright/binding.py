@@ -70,6 +70,10 @@ def options_of(state):
     return json.loads(state.options)
 
 
+def _new_key():
+    return uuid.uuid4().hex[:8]
+
+
 def is_bound(obj):
     return obj.type == "MESH" and bool(obj.cagewright.key)
 
@@ -224,6 +228,11 @@ def _checked_cage(model, live, depsgraph):
     return now
 
 
+def linked_mesh(model):
+    return (f"{model.name}: its mesh is linked from another file; make it local first (Object > Relations > Make Local > "
+            "Selected Objects and Data)")
+
+
 def _set_problem(state, text):
     if state.problem != text:
         state.problem = text
@@ -233,9 +242,11 @@ def follow(model, depsgraph):
     """Brings a bound model up to date. What stands in the way is remembered, for the panel."""
     state = model.cagewright
     mesh = model.data
-    if model.mode == "EDIT" or mesh.library is not None:
+    if model.mode == "EDIT":
         return
     try:
+        if mesh.library is not None:
+            raise Failure(linked_mesh(model))
         live = live_of(model)
         now = _checked_cage(model, live, depsgraph)
         attribute = mesh.attributes.get(attribute_of(state))
@@ -318,13 +329,32 @@ def own_nodes(model):
         bpy.data.node_groups.remove(tree)
 
 
+def own_attributes(model, others):
+    """An object that shares its mesh with others that are bound gets attributes of its own in it, where the others are
+    moved otherwise: of a linked copy that stands elsewhere, say."""
+    state, mesh = model.cagewright, model.data
+    sharing = [other for other in others if other.data == mesh and other.cagewright.key == state.key]
+    if not sharing or mesh.library is not None or mesh.is_editmode:
+        return
+    is_in_parent = _parent_of(state.cage) is not None and Record.of(state.packed).anchor is not None
+    if is_in_parent and all(other.cagewright.cage == state.cage for other in sharing):
+        return  # all are moved alike
+    modifier, rest = modifier_of(model), mesh.attributes.get(rest_attribute_of(state))
+    state.key = _new_key()
+    if rest is not None:
+        flat = np.empty(3 * len(mesh.vertices), np.float32)
+        rest.data.foreach_get("vector", flat)
+        mesh.attributes.new(rest_attribute_of(state), "FLOAT_VECTOR", "POINT").data.foreach_set("vector", flat)
+    if modifier is not None:
+        modifier.node_group = _nodes(state.key, state.cage)
+
+
 class Request:
     """A model to be bound: what is read of it on the main thread, and the deformer that is made on another."""
 
     def __init__(self, model, cage, pose, kind, options):
         if model.data.library is not None or model.library is not None:
-            raise Failure(f"{model.name}: its mesh is linked from another file; make it local first (Object > Relations "
-                          "> Make Local > Selected Objects and Data)")
+            raise Failure(linked_mesh(model))
         if cage.type != "MESH":
             raise Failure(f"{cage.name} is no mesh")
         if cage == model:
@@ -368,7 +398,7 @@ def attach(request):
         raise Failure(f"{request.model} or {request.cage} has changed while it was being bound: bind again")
     unbind(model)
     state = model.cagewright
-    state.key = uuid.uuid4().hex[:8]
+    state.key = _new_key()
     state.cage = cage
     state.kind = request.kind
     state.options = json.dumps(request.options)

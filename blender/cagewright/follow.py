@@ -28,12 +28,15 @@ def gather():
     """Finds the bound models anew."""
     global _objects
     _bound.clear()
+    models = []
     for model in binding.bound_models():
         cage = model.cagewright.cage
         if cage is None or not cage.users_scene:  # deleted
             binding.unbind(model)
             continue
         binding.own_nodes(model)
+        binding.own_attributes(model, models)
+        models.append(model)
         _bound.setdefault(cage.name, []).append(model.name)
     _objects = len(bpy.data.objects)
 
@@ -45,8 +48,13 @@ def _models(cage_name):
             yield model
 
 
-def _deleted():
-    return any(cage is None or not cage.users_scene for cage in map(bpy.data.objects.get, _bound))
+def _is_as_gathered(model_name, cage_name):
+    model, cage = bpy.data.objects.get(model_name), bpy.data.objects.get(cage_name)
+    return model is not None and cage is not None and model.cagewright.cage == cage and bool(cage.users_scene)
+
+
+def _deleted_or_renamed():
+    return not all(_is_as_gathered(name, cage_name) for cage_name, names in _bound.items() for name in names)
 
 
 def _name_hidden():
@@ -70,7 +78,7 @@ def _after_render(*_):
 def _after_update(scene, depsgraph):
     if _paused:
         return
-    if len(bpy.data.objects) != _objects or _deleted():
+    if len(bpy.data.objects) != _objects or _deleted_or_renamed():
         gather()
         for model in _all():
             binding.follow(model, depsgraph)

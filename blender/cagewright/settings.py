@@ -117,27 +117,30 @@ CagewrightSettings = type("CagewrightSettings", (bpy.types.PropertyGroup,), {"__
                                                                              "__doc__": "What is set in the panel."})
 
 
+_KEPT = {"LIBRARY_OVERRIDABLE"}  # with the file where the object is an override of one in another
+
+
 class CagewrightModel(bpy.types.PropertyGroup):
     """A model that a cage was made for."""
 
-    object: PointerProperty(type=bpy.types.Object)
+    object: PointerProperty(type=bpy.types.Object, override=_KEPT)
 
 
 class CagewrightObject(bpy.types.PropertyGroup):
     """What an object remembers: of a bound model its binding, of a cage whose it is."""
 
     # Of a bound model; see binding.py.
-    cage: PointerProperty(name="Cage", type=bpy.types.Object)
-    key: StringProperty()
-    kind: StringProperty()
-    options: StringProperty()
-    pose: StringProperty()
-    packed: StringProperty()
-    problem: StringProperty()
+    cage: PointerProperty(name="Cage", type=bpy.types.Object, override=_KEPT)
+    key: StringProperty(override=_KEPT)
+    kind: StringProperty(override=_KEPT)
+    options: StringProperty(override=_KEPT)
+    pose: StringProperty(override=_KEPT)
+    packed: StringProperty(override=_KEPT)
+    problem: StringProperty(override=_KEPT)
     # Of a cage.
-    models: CollectionProperty(type=CagewrightModel)
-    mirror: StringProperty()
-    verdict: StringProperty()
+    models: CollectionProperty(type=CagewrightModel, override=_KEPT)
+    mirror: StringProperty(override=_KEPT)
+    verdict: StringProperty(override=_KEPT)
 
 
 _CLASSES = [CagewrightSettings, CagewrightModel, CagewrightObject]
@@ -147,7 +150,7 @@ def register():
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Scene.cagewright = PointerProperty(type=CagewrightSettings)
-    bpy.types.Object.cagewright = PointerProperty(type=CagewrightObject)
+    bpy.types.Object.cagewright = PointerProperty(type=CagewrightObject, override=_KEPT)
 
 
 def unregister():

@@ -380,6 +380,77 @@ class Bind(Test):
         self.assertNear(shown(copied_model), self.rest + 1, 1e-6)
         self.assertNear(shown(model), self.rest - 1, 1e-6)
 
+    def test_renamed_and_renamed_for_each_other(self):
+        model, cage = self.bound()
+        model.name, cage.name = "Body", "Skin"
+        set_points(cage, self.cage_rest + 1)
+        self.assertNear(shown(model), self.rest + 1, 1e-6)
+        model.name = "Unused"
+        cage.name, model.name = "Body", "Skin"
+        set_points(cage, self.cage_rest + 2)
+        self.assertNear(shown(model), self.rest + 2, 1e-6)
+
+    def test_linked_copies_of_a_bound_model(self):
+        """Copies that share its mesh: each goes where its own place says, in any order."""
+        for parented in (False, True):
+            with self.subTest(parented=parented):
+                empty()
+                model, cage = self.bound()
+                if parented:
+                    bpy.ops.cagewright.unbind()
+                    cage.parent = model
+                    bind(model, cage)
+                select(model)
+                bpy.ops.object.duplicate(linked=True)
+                copy = bpy.context.object
+                self.assertEqual(copy.data, model.data)
+                copy.location.x += 10
+                bpy.context.view_layer.update()
+                set_points(cage, self.cage_rest + 1)
+                self.assertNear(shown(model), self.rest + 1, 1e-6)
+                # In its own place where the cage is the model's child, else where the cage is.
+                self.assertNear(shown(copy), self.rest + 1 + [10 if parented else 0, 0, 0], 1e-6)
+                bpy.data.objects.remove(copy)
+                set_points(cage, self.cage_rest + 2)
+                self.assertNear(shown(model), self.rest + 2, 1e-6)
+
+    def test_an_overridden_character_says_what_to_do_and_follows_then(self):
+        model, cage = self.bound()
+        collection = bpy.data.collections.new("Character")
+        bpy.context.scene.collection.children.link(collection)
+        for obj in (model, cage):
+            bpy.context.scene.collection.objects.unlink(obj)
+            collection.objects.link(obj)
+        bpy.ops.wm.save_as_mainfile(filepath=str(HOME / "character.blend"))
+        empty()
+        with bpy.data.libraries.load(str(HOME / "character.blend"), link=True) as (source, target):
+            target.collections = ["Character"]
+        bpy.context.scene.collection.children.link(target.collections[0])
+        root = target.collections[0].override_hierarchy_create(bpy.context.scene, bpy.context.view_layer)
+        model, cage = (next(obj for obj in root.objects if obj.name.startswith(name)) for name in ("Torus", "Box"))
+        bpy.context.view_layer.update()
+        self.assertNear(shown(model), self.rest, 1e-6)
+        cage.location.z += 2
+        bpy.context.view_layer.update()
+        self.assertIn("make it local", model.cagewright.problem)
+        select(model)
+        bpy.ops.object.make_local(type="SELECT_OBDATA")
+        model = bpy.context.view_layer.objects.active
+        self.assertIsNone(model.data.library)
+        cage.location.z += 1
+        bpy.context.view_layer.update()
+        self.assertEqual(model.cagewright.problem, "")
+        self.assertNear(shown(model), self.rest + [0, 0, 3], 1e-6)
+        names = model.name, cage.name
+        bpy.ops.wm.save_as_mainfile(filepath=str(HOME / "shot.blend"))
+        bpy.ops.wm.open_mainfile(filepath=str(HOME / "shot.blend"))
+        model, cage = (next(obj for obj in bpy.data.objects if obj.name == name and obj.library is None) for name in names)
+        self.assertEqual(model.cagewright.cage, cage)
+        self.assertNear(shown(model), self.rest + [0, 0, 3], 1e-6)
+        cage.location.z += 1
+        bpy.context.view_layer.update()
+        self.assertNear(shown(model), self.rest + [0, 0, 4], 1e-6)
+
     def test_linked_models_are_refused_with_a_remedy(self):
         model = add_torus()
         model.name = "Library Torus"
