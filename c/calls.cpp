@@ -1,5 +1,7 @@
 #include "calls.h"
 
+#include "core/arena.h"
+
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -139,9 +141,6 @@ Status all_given(std::initializer_list<Needed> needed) {
   return success();
 }
 
-// More are of no use, and the arena has a slot for each.
-constexpr int most_threads = 1024;
-
 cw_code call(cw_error** error, const cw_control* given,
              const std::function<Status(const Progress&)>& body) noexcept {
   return call(error, [&]() -> Status {
@@ -155,8 +154,7 @@ cw_code call(cw_error** error, const cw_control* given,
     if (control.cancelled != nullptr) {
       watcher.emplace(control.cancelled, control.user, stop);
     }
-    tbb::task_arena arena(control.threads > 0 ? std::min(control.threads, most_threads)
-                                              : tbb::task_arena::automatic);
+    tbb::task_arena arena(arena_slots(control.threads));
     return arena.execute([&] { return body(progress); });
   });
 }

@@ -3,6 +3,7 @@
 #include "json.h"
 #include "session.h"
 
+#include "core/arena.h"
 #include "io/atomic_file.h"
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/version.h>
@@ -84,7 +85,7 @@ std::string version_text() {
 
 int run(Session& session) {
   try {
-    tbb::task_arena arena(session.threads > 0 ? session.threads : tbb::task_arena::automatic);
+    tbb::task_arena arena(arena_slots(session.threads));
     return arena.execute(session.run);
   } catch (const std::bad_alloc&) {
     return fail(out_of_memory(session));

@@ -315,21 +315,22 @@ Status check_options(const Scene& scene, std::size_t views, const RenderOptions&
   return success();
 }
 
-Status check_size(const RenderOptions& options) {
+/// How many samples a pixel can have, of those asked for.
+Result<int> samples_within_memory(const RenderOptions& options) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   // Some 40 bytes a sample: about 4 GB, beyond which drivers fail in ways that cannot be caught.
   constexpr double most_samples = 1e8;
-  const double across = static_cast<double>(options.samples) * options.width;
-  const double upward = static_cast<double>(options.samples) * options.height;
-  if (across > largest || upward > largest || across * upward > most_samples) {
-    return Error{ErrorCode::too_large,
-                 "a picture of " + std::to_string(options.width) + " by " +
-                     std::to_string(options.height) + " pixels with " +
-                     std::to_string(options.samples) +
-                     " samples needs too much memory; make it smaller or use fewer samples"};
+  for (int samples = options.samples; samples > 0; --samples) {
+    const double across = static_cast<double>(samples) * options.width;
+    const double upward = static_cast<double>(samples) * options.height;
+    if (across <= largest && upward <= largest && across * upward <= most_samples) {
+      return samples;
+    }
   }
-  return success();
+  return Error{ErrorCode::too_large, "a picture of " + std::to_string(options.width) + " by " +
+                                         std::to_string(options.height) +
+                                         " pixels needs too much memory; make it smaller"};
 }
 
 } // namespace
@@ -631,8 +632,8 @@ Result<Image> Renderer::render(const Scene& scene, const RenderOptions& options)
 }
 
 Result<Image> Renderer::render(const Scene& scene, std::span<const View> views,
-                               const RenderOptions& options) {
-  if (const Status fit = check_options(scene, views.size(), options); !fit) {
+                               const RenderOptions& asked) {
+  if (const Status fit = check_options(scene, views.size(), asked); !fit) {
     return fit.error();
   }
   const Result<Normalization> normalization = normalization_of(scene);
@@ -640,9 +641,12 @@ Result<Image> Renderer::render(const Scene& scene, std::span<const View> views,
     return normalization.error();
   }
   const gl::Context::Use use(*programs_->context);
-  if (const Status fit = check_size(options); !fit) {
-    return fit.error();
+  const Result<int> samples = samples_within_memory(asked);
+  if (!samples) {
+    return samples.error();
   }
+  RenderOptions options = asked;
+  options.samples = *samples;
   const Shapes shapes = shapes_of(scene, *normalization, options);
 
   const gl::Elements solids(shapes.solids,

@@ -307,7 +307,17 @@ TEST_F(Rendering, RefusesOptionsOutOfRange) {
   EXPECT_EQ(code_with([](RenderOptions& o) { o.cage_opacity = std::nan(""); }),
             ErrorCode::invalid_option);
   EXPECT_EQ(code_with([](RenderOptions& o) { o.height = 1 << 30; }), ErrorCode::too_large);
-  EXPECT_EQ(code_with([](RenderOptions& o) { o.width = o.height = 5100; }), ErrorCode::too_large);
+  EXPECT_EQ(code_with([](RenderOptions& o) { o.width = o.height = 20000; }), ErrorCode::too_large);
+}
+
+TEST_F(Rendering, DrawsLargePicturesWithFewerSamples) {
+  const Scene scene{{Layer::model(sphere)}};
+  RenderOptions options = small();
+  options.width = 9000; // 18,000 samples across are more than drivers hold
+  options.height = 60;
+  const Result<Image> image = renderer->render(scene, options);
+  ASSERT_TRUE(image.has_value()) << image.error().message;
+  EXPECT_EQ(image->width, 9000);
 }
 
 } // namespace
