@@ -1,5 +1,6 @@
 import os
-from typing import IO, Any, Callable, Iterable, Iterator, NamedTuple, Optional, Sequence, Union
+from typing import (IO, Any, Callable, Iterable, Iterator, Literal, NamedTuple, Optional, Sequence, Union,
+                    overload)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -90,8 +91,17 @@ def compare(vertices: _Vertices, faces: Optional[_Faces] = None, *cages: Any, na
 def info(vertices: _Vertices, faces: Optional[_Faces] = None, *, resolution: int = 64, threads: Optional[int] = None,
          progress: _Progress = None) -> dict[str, Any]: ...
 def coordinate_kinds() -> list[dict[str, Any]]: ...
+@overload
 def coordinates(kind: str, points: ArrayLike, cage_vertices: _Vertices, cage_faces: Optional[_Faces] = None, *,
-                sparse: bool = False, threads: Optional[int] = None, progress: _Progress = None,
+                sparse: Literal[False] = False, threads: Optional[int] = None, progress: _Progress = None,
+                **settings: Any) -> NDArray[np.float64]: ...
+@overload
+def coordinates(kind: str, points: ArrayLike, cage_vertices: _Vertices, cage_faces: Optional[_Faces] = None, *,
+                sparse: Literal[True], threads: Optional[int] = None, progress: _Progress = None,
+                **settings: Any) -> CSR: ...
+@overload
+def coordinates(kind: str, points: ArrayLike, cage_vertices: _Vertices, cage_faces: Optional[_Faces] = None, *,
+                sparse: bool, threads: Optional[int] = None, progress: _Progress = None,
                 **settings: Any) -> Union[NDArray[np.float64], CSR]: ...
 
 class Deformer:

@@ -13,7 +13,7 @@ from . import _arrays
 from ._calls import run, whole_number
 from ._library import Handle, MeshView, checked, lib, take_text
 from ._meshes import Mesh, arrays_of
-from .errors import NotAsAsked, error_of
+from .errors import InputError, NotAsAsked, error_of
 
 
 class _Default(int):
@@ -78,10 +78,18 @@ def _refuse_unknown(names):
                            + (f"; did you mean {near[0]}?" if near else "; cagewright.options() lists those there are"))
 
 
+_ARGUMENTS = {"vertices": "num_vertices", "faces": "num_faces"}  # of options that have another name here
+
+
 def _options(given):
     handle = Handle(lib.cw_options_new(), lib.cw_options_free)
     for name, value in given.items():
-        checked(lib.cw_options_set, handle.pointer, _bytes_of(name.replace("_", "-")), _bytes_of(_text(value)))
+        name = name.replace("_", "-")
+        try:
+            checked(lib.cw_options_set, handle.pointer, _bytes_of(name), _bytes_of(_text(value)))
+        except InputError as error:  # in the caller's words
+            argument = _ARGUMENTS.get(name, name.replace("-", "_"))
+            raise error_of(error.code, str(error).replace(f"{name}: ", f"{argument}: ", 1)) from None
     return handle
 
 
@@ -158,7 +166,7 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
         given["vertices"] = num_vertices
     asked = _options(given)
     if density is not None:
-        weights, _keep = _arrays.array_of(np.ravel(density), "the density")
+        weights, _keep = _arrays.array_of(density if isinstance(density, str) else np.ravel(density), "the density")
         checked(lib.cw_options_set_density, asked.pointer, ctypes.byref(weights))
     if joints is not None:
         rows = np.atleast_2d(np.asarray(joints, float))

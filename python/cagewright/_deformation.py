@@ -155,6 +155,10 @@ class Deformer:
         self._points = (lib.cw_deformer_vertex_count(pointer), 3)
         self._cage_points = (lib.cw_deformer_cage_vertex_count(pointer), 3)
 
+    def __reduce__(self):
+        raise TypeError("a Deformer is memory of the library's, and cannot be copied or pickled; make another one of the same "
+                        "model and cage")
+
     def __call__(self, cage_vertices):
         """Moves all vertices of the cage, and the model with them.
 

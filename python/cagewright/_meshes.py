@@ -6,6 +6,7 @@ import json
 import numpy as np
 
 from . import _arrays
+from ._calls import run
 from ._library import Handle, checked, lib, path_bytes
 
 _POSES = {"shown": 0, "bind": 1}
@@ -96,15 +97,20 @@ def read_mesh(source, *, format=None, pose="shown"):
         source = source.read()
         if isinstance(source, str):
             raise TypeError('a file that was opened as text; open it with "rb", or give its path')
-    out = ctypes.c_void_p()
-    if isinstance(source, (bytes, bytearray, memoryview)):
-        content = bytes(source)
-        checked(lib.cw_parse_mesh, content, len(content), None if format is None else format.encode(), None,
-                _POSES[pose], ctypes.byref(out))
-    else:
-        checked(lib.cw_read_mesh, path_bytes(source), _POSES[pose], ctypes.byref(out))
-    owner = Handle(out.value, lib.cw_mesh_free)
-    return Mesh(**arrays_of(out.value, owner))
+    content = bytes(source) if isinstance(source, (bytes, bytearray, memoryview)) else None
+    name = path_bytes(source) if content is None else None
+
+    def work(_control):
+        out = ctypes.c_void_p()
+        if content is None:
+            checked(lib.cw_read_mesh, name, _POSES[pose], ctypes.byref(out))
+        else:
+            checked(lib.cw_parse_mesh, content, len(content), None if format is None else format.encode(), None,
+                    _POSES[pose], ctypes.byref(out))
+        return Handle(out.value, lib.cw_mesh_free)
+
+    owner = run(work, None, None)
+    return Mesh(**arrays_of(owner.pointer, owner))
 
 
 def write_mesh(path, vertices, faces=None):
@@ -125,4 +131,4 @@ def write_mesh(path, vertices, faces=None):
     name = path_bytes(path)
     vertices, faces = _arrays.two_parts(vertices, faces, "the mesh")
     mesh = _arrays.mesh_view(vertices, faces, "the mesh")
-    checked(lib.cw_write_mesh, ctypes.byref(mesh), name)
+    run(lambda _control: checked(lib.cw_write_mesh, ctypes.byref(mesh), name), None, None)

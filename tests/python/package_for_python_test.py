@@ -5,6 +5,7 @@ package_for_python_test.py FOLDER_OF_PACKAGE PROGRAM [unittest arguments]
 
 import ast
 import contextlib
+import copy
 import gc
 import importlib.util
 import inspect
@@ -19,6 +20,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import unittest.mock
 import warnings
 
 PACKAGE, PROGRAM = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
@@ -194,7 +196,13 @@ class ArraysIn(unittest.TestCase):
             (lambda: cagewright.generate("model.obj"), "read_mesh"),
             (lambda: cagewright.generate(V.ravel(), F), "reshape"),
             (lambda: cagewright.generate(V, F, num_vertice=60), "did you mean num_vertices"),
+            (lambda: cagewright.generate(V, F, num_vertices=-3), "^num_vertices: "),
+            (lambda: cagewright.generate(V, F, num_faces=2.5), "^num_faces: "),
+            (lambda: cagewright.generate(V, F, max_gap=-1), "^max_gap: "),
+            (lambda: cagewright.generate(V, F, density="file.npy"), "the density: .* this str"),
             (lambda: cagewright.generate(V, F, depth="1\0"), "depth: "),
+            (lambda: copy.deepcopy(deformer), "cannot be copied"),
+            (lambda: pickle.dumps(deformer), "cannot be copied or pickled"),
             (lambda: cagewright.generate(V, F, depth="\udc80"), "depth: "),
             (lambda: cagewright.generate(V, F, progress=3), "progress: 3 cannot be called"),
             (lambda: cagewright.info(V, F, resolution=8.0), "resolution: 8.0 is not a whole number"),
@@ -328,7 +336,17 @@ class Generate(InAFolder):
         for threads in (0, 1.5, "2"):
             with self.assertRaisesRegex(ValueError, "threads"):
                 cagewright.generate(V, F, threads=threads)
-        cagewright.info(V, F, resolution=8, threads=10**9)  # so many make no difference
+
+    def test_more_threads_than_cores_make_no_difference_and_no_noise(self):
+        said = subprocess.run([sys.executable, "-c", """
+import sys
+sys.path.insert(0, sys.argv[1])
+import cagewright
+box = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3]]
+for threads in (1, 1000, 10**9):
+    cagewright.info(box, resolution=8, threads=threads)
+"""  , str(PACKAGE)], capture_output=True, text=True, check=True)
+        self.assertEqual(said.stdout + said.stderr, "")
 
     def test_takes_what_means_the_same(self):
         for same in ({"num_vertices": 60.0}, {"symmetry": False},
@@ -350,7 +368,7 @@ class Generate(InAFolder):
         self.assertTrue(cagewright.check(V, F, cage))
 
     def test_errors_have_the_librarys_sentences(self):
-        for options, words in [({"depth": 99}, "depth"), ({"max_gap": -1}, "max-gap"), ({"clearance": "lots"}, "lots"),
+        for options, words in [({"depth": 99}, "depth"), ({"max_gap": -1}, "max_gap"), ({"clearance": "lots"}, "lots"),
                                ({"teapots": 3}, "teapots"), ({"method": "magic"}, "magic")]:
             with self.assertRaises(cagewright.InputError) as raised:
                 cagewright.generate(V, F, **options)
@@ -433,6 +451,25 @@ except KeyboardInterrupt:
 
     def test_interrupt_of_binding(self):
         self.interrupt("cagewright.Deformer(V, F, C * 2, G, progress=progress)")
+
+    def test_interrupt_of_reading_and_writing(self):
+        for work in (lambda: cagewright.read_mesh("model.obj"), lambda: cagewright.read_mesh(b"v 0 0 0"),
+                     lambda: cagewright.write_mesh(self.folder / "cage.obj", CAGE)):
+            began, goes_on = threading.Event(), threading.Event()
+
+            def slow_disk(*_):
+                began.set()
+                goes_on.wait()
+
+            def interrupt():
+                began.wait()
+                os.kill(os.getpid(), signal.SIGINT)
+
+            threading.Thread(target=interrupt).start()
+            with unittest.mock.patch("cagewright._meshes.checked", slow_disk), self.assertRaises(KeyboardInterrupt):
+                work()
+            goes_on.set()
+
 
 class Others(InAFolder):
     def test_check(self):
@@ -715,6 +752,20 @@ class Words(unittest.TestCase):
                               text=True, env={**os.environ, "PYTHONPATH": str(PACKAGE), "MYPYPATH": str(PACKAGE)}).stdout
         self.assertIn("modules", said)
         self.assertEqual(re.findall(r"^error: cagewright\.[^_].*", said, re.M), [])
+
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+    def test_mypy_agrees_with_what_the_documentation_does(self):
+        blocks = re.findall(r"```python\n(.*?)```", (SOURCE / "docs" / "python.md").read_text(), re.S)
+        checks = ["cagewright.coordinates('green', V, cage, sparse=True).toarray().sum()",
+                  "cagewright.generate((V, F), max_gap='2%', threads=2).report['cage']",
+                  "reveal_type(cagewright.render(V, F, cage, views=['front', (30, 10)]))"]
+        with tempfile.TemporaryDirectory() as folder:
+            script = pathlib.Path(folder) / "script.py"
+            script.write_text("\n".join(blocks + checks) + "\n")
+            done = subprocess.run([sys.executable, "-m", "mypy", "--check-untyped-defs", "--cache-dir", folder, script], text=True,
+                                  capture_output=True, cwd=folder, env={**os.environ, "MYPYPATH": str(PACKAGE)})
+        self.assertEqual(re.findall(r"^.*error:.*", done.stdout, re.M), [])
+        self.assertIn("ndarray", done.stdout)
 
     def test_the_documentation_runs(self):
         text = (SOURCE / "docs" / "python.md").read_text()
