@@ -24,15 +24,15 @@ import argparse
 import collections
 import json
 import math
-import os
 import pathlib
 import random
 import shlex
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
+
+from limited_run import limited_run
 
 GRACE = 20  # seconds beyond the time limit, for reading, writing, and a busy machine
 FORMATS = {".obj", ".ply", ".stl", ".off", ".glb", ".gltf"}
@@ -254,27 +254,6 @@ def options_for(rng, is_short):
     return budget, ["--vertices", str(budget), *words], judged
 
 
-def run(command, limit):
-    """Exit code, what it said, seconds of processor time, bytes of memory; code None: it was stopped."""
-    with tempfile.TemporaryFile() as said:
-        begin = time.monotonic()
-        process = subprocess.Popen([str(word) for word in command], stdout=said, stderr=subprocess.STDOUT)
-        while True:
-            pid, status, usage = os.wait4(process.pid, os.WNOHANG)
-            if pid:
-                break
-            if time.monotonic() - begin > limit:
-                process.kill()
-                _, status, usage = os.wait4(process.pid, 0)
-                break
-            time.sleep(0.005)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        is_stopped = time.monotonic() - begin > limit and process.returncode < 0
-        said.seek(0)
-        return (None if is_stopped else process.returncode, said.read().decode(errors="replace"),
-                usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss)
-
-
 def is_finite(value):
     if isinstance(value, dict):
         return all(map(is_finite, value.values()))
@@ -308,19 +287,19 @@ class Trial:
         self.faults.append((kind, text.strip().splitlines()[-1] if text.strip() else ""))
 
     def call(self, name, command):
-        code, said, seconds, memory = run([self.program, *command, *self.limits_of(name)], self.limits[0] + GRACE)
-        if code is None:
+        ran = limited_run([self.program, *command, *self.limits_of(name)], self.limits[0] + GRACE)
+        if ran.code is None:
             self.fault("hang", f"{name}: still there after {self.limits[0] + GRACE} s")
-        elif code < 0 or code > 4:
-            self.fault("crash", f"{name}: exit code {code}: {said}")
-        return code, said, seconds, memory
+        elif ran.code < 0 or ran.code > 4:
+            self.fault("crash", f"{name}: exit code {ran.code}: {ran.said}")
+        return ran
 
     def limits_of(self, _name):
         return ["--time-limit", f"{self.limits[0]}s", "--memory-limit", f"{self.limits[1]}M"]
 
     def go(self):
         report = self.folder / "report.json"
-        code, said, self.seconds, self.memory = self.call("generate", [*self.command(), "--json", report])
+        code, said, self.seconds, _, self.memory = self.call("generate", [*self.command(), "--json", report])
         if self.faults:
             self.outcome = "fault"
         elif not (self.folder / "cage.obj").exists():
@@ -351,14 +330,14 @@ class Trial:
             self.fault("clearance", f"{self.figures['clearance']} of {kept}")
         if not is_finite(report):
             self.fault("figures", "not finite")
-        verdict, said, _, _ = self.call("check", ["check", self.model, cage, "--allow-pieces", *self.judged])
+        verdict, said, *_ = self.call("check", ["check", self.model, cage, "--allow-pieces", *self.judged])
         if verdict == 1:
             self.fault("invalid", said)
         elif verdict not in (0, 4):
             self.fault("mute", "check: " + said)
         posed(cage, self.folder / "posed.obj")
         self.call("bind", ["bind", self.model, cage, "-o", self.folder / "w.npz"])
-        code, said, _, _ = self.call("deform", ["deform", self.model, cage, self.folder / "posed.obj", "-o",
+        code, said, *_ = self.call("deform", ["deform", self.model, cage, self.folder / "posed.obj", "-o",
                                                 self.folder / "moved.obj"])
         moved = self.folder / "moved.obj"
         if code == 0 and ("nan" in moved.read_text() or "inf" in moved.read_text()):

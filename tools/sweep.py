@@ -5,7 +5,7 @@ and writes a table and a list of the failures.
   sweep.py --models DIR ... [--budgets 50 100] [--modes envelope boxes-improved] [--jobs 2] [--output sweep.md]
 
 A mode is a method, and options of generate after it, joined by '+': envelope, boxes-improved, envelope+quads
-(--quads), envelope+symmetry=off (--symmetry off). Times are seconds of user CPU, so that they hold
+(--quads), envelope+symmetry=off (--symmetry off). Times are seconds of processor time, so that they hold
 on a busy machine; --baseline compares them, and the figures, with an earlier run's JSON. Exits with
 1 when a cage is missing or not certified.
 """
@@ -14,14 +14,13 @@ import argparse
 import collections
 import concurrent.futures
 import json
-import os
 import pathlib
 import statistics
 import subprocess
 import sys
 import tempfile
-import time
 
+from limited_run import limited_run
 from table import models_in
 
 # What generate answers without a cage, and rightly: there is nothing to build a cage around.
@@ -37,36 +36,20 @@ def mode_options(mode):
     return options
 
 
-def timed(command, limit):
-    """(exit code, output, user CPU seconds, wall seconds)"""
-    begin = time.monotonic()
-    with tempfile.TemporaryFile() as said:
-        process = subprocess.Popen([str(c) for c in command], stdout=said, stderr=subprocess.STDOUT)
-        while True:
-            pid, status, usage = os.wait4(process.pid, os.WNOHANG)
-            if pid:
-                break
-            if time.monotonic() - begin > limit:
-                process.kill()
-                _, status, usage = os.wait4(process.pid, 0)
-                return -1, f"stopped after {limit} s", usage.ru_utime, limit
-            time.sleep(0.01)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        said.seek(0)
-        return (process.returncode, said.read().decode(errors="replace").strip(), usage.ru_utime,
-                time.monotonic() - begin)
-
-
 def one(program, model, budget, mode, limit, extra):
     """A row of figures, or what went wrong."""
     row = {"model": model.name, "budget": budget, "mode": mode}
     with tempfile.TemporaryDirectory() as folder:
         cage, figures = pathlib.Path(folder, "cage.obj"), pathlib.Path(folder, "cage.json")
-        code, said, user, wall = timed([program, "generate", model, "-o", cage, "--json", figures, "--vertices",
-                                        budget, *mode_options(mode), *extra], limit)
-        row.update(user=user, wall=wall)
-        if code not in (0, 3):  # 3: the smallest cage there was, but over the budget
-            row["unfit" if code == 2 and any(u in said for u in UNFIT) else "failure"] = said.splitlines()[-1] if said else f"exit code {code}"
+        ran = limited_run([program, "generate", model, "-o", cage, "--json", figures, "--vertices", budget,
+                           *mode_options(mode), *extra], limit)
+        row.update(user=ran.seconds, wall=ran.wall)
+        if ran.code is None:
+            row["failure"] = f"stopped after {limit} s"
+            return row
+        if ran.code not in (0, 3):  # 3: the smallest cage there was, but over the budget
+            is_unfit = ran.code == 2 and any(words in ran.said for words in UNFIT)
+            row["unfit" if is_unfit else "failure"] = (ran.said.strip().splitlines() or [f"exit code {ran.code}"])[-1]
             return row
         judged = subprocess.run([program, "check", model, cage], capture_output=True, text=True, check=False)
         if judged.returncode != 0:

@@ -57,9 +57,8 @@ struct RenderOptions {
   double edge_width = 2.2;       ///< of the cage's lines, pixels
   double vertex_radius = 3.4;    ///< of the cage's dots, pixels; 0: no dots
   double least_bend_degrees = 0; ///< sides of the cage that bend less are not drawn
-  /// Each pixel is the mean of samples * samples; in [1, 4]. A picture that is too large to be drawn
-  /// so has fewer.
-  int samples = 3;
+  int samples = 3; ///< each pixel is the mean of samples * samples, fewer if that is too many;
+                   ///< in [1, 4]
 };
 
 /// Keeps what drawing needs (an OpenGL context and programs) for many pictures. A renderer may be
