@@ -102,6 +102,22 @@ def python_page(package):
     return "\n".join(lines)
 
 
+# Tables as the theme draws them.
+THEME_EXTRA = """jQuery(function ($) {
+  $("div.section table, div[role=main] table").addClass("docutils");
+});
+"""
+
+
+def complete_theme(folder):
+    """The scripts that Debian's MkDocs names in each page, and leaves out: without jQuery the menu does not unfold."""
+    wanted = folder / "jquery-3.6.0.min.js"
+    if not wanted.exists():
+        shutil.copy("/usr/share/javascript/jquery/jquery.min.js", wanted)
+    if not (folder / "theme_extra.js").exists():
+        (folder / "theme_extra.js").write_text(THEME_EXTRA)
+
+
 def main():
     build, out = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     shutil.rmtree(SOURCE, ignore_errors=True)
@@ -121,6 +137,7 @@ def main():
                 ("coordinates/kinds.h", "all kinds of coordinates"), ("deform/deformer.h", "a model that follows its cage"),
                 ("io/model_file.h", "files, with all that they hold"), ("c/cagewright.h", "the C interface")]))
     subprocess.run(["mkdocs", "build", "--strict", "--quiet", "-f", ROOT / "mkdocs.yml", "-d", out], check=True)
+    complete_theme(out / "js")
     doxyfile = SOURCE.with_name("Doxyfile")
     doxyfile.write_text(DOXYFILE.format(root=ROOT, out=out))
     subprocess.run(["doxygen", str(doxyfile)], check=True, stdout=subprocess.DEVNULL)
