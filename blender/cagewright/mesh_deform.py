@@ -1,8 +1,8 @@
 """Bind by Blender's own Mesh Deform modifier, set up right.
 
 That modifier says it is bound even if nothing follows: of a posed figure, of an open cage, or of one that is too tight
-for its grid. Here the armature goes to its rest position while it binds, and back; and a binding is one only if every
-vertex follows when the cage is moved.
+for its grid. Here the armature goes to its rest position while it binds, and back, unless the cage is for the pose that is
+shown: then it deforms after the armature. A binding is one only if every vertex follows when the cage is moved.
 """
 
 import bpy
@@ -17,7 +17,8 @@ _SLACK = 1e-3            # how far a vertex may be from following, as a part of 
 
 
 class at_rest:
-    """While it lasts, the armatures of some objects are in their rest position."""
+    """While it lasts, the armatures of some objects are in their rest position: `with at_rest(...) as is_posed`, which
+    says whether any was in another."""
 
     def __init__(self, *objects):
         rigs = {modifier.object.data for obj in objects for modifier in obj.modifiers
@@ -28,6 +29,7 @@ class at_rest:
         for rig in self._rigs:
             rig.pose_position = "REST"
         bpy.context.view_layer.update()
+        return bool(self._rigs)
 
     def __exit__(self, *_):
         for rig in self._rigs:
@@ -93,21 +95,35 @@ def bind_one(model, cage):
     old = model.modifiers.get(MODIFIER)
     if old is not None:
         model.modifiers.remove(old)
-    with at_rest(model, cage):
-        _check(model, cage)
-        modifier = model.modifiers.new(MODIFIER, "MESH_DEFORM")
-        modifier.object = cage
-        binding.move_to(model, modifier, 0)
-        left = count = 0
-        for precision in _PRECISIONS:
-            modifier.precision = precision
+    try:
+        with at_rest(model, cage) as is_posed:
+            _check(model, cage)
+            return _bind_at(model, cage, 0)
+    except Failure as at_rest_failure:
+        if not is_posed:
+            raise
+        try:
+            _check(model, cage)
+        except Failure:
+            raise Failure(f"{at_rest_failure} (in the rest position of the armature)") from None
+    return _bind_at(model, cage, geometry.first_making(model))  # a cage for the pose that is shown
+
+
+def _bind_at(model, cage, place):
+    """Binds with the modifier at a place of the stack, and gives the precision it took. Failure: some vertices stay."""
+    modifier = model.modifiers.new(MODIFIER, "MESH_DEFORM")
+    modifier.object = cage
+    binding.move_to(model, modifier, place)
+    left = count = 0
+    for precision in _PRECISIONS:
+        modifier.precision = precision
+        _bind(model, modifier)
+        left, count = staying(model, cage)
+        if left == 0:
+            return precision
+        if modifier.is_bound:
             _bind(model, modifier)
-            left, count = staying(model, cage)
-            if left == 0:
-                return precision
-            if modifier.is_bound:
-                _bind(model, modifier)
-        model.modifiers.remove(modifier)
+    model.modifiers.remove(modifier)
     raise Failure(f"Mesh Deform leaves {left} of {count} vertices of {model.name} behind, even at precision "
                   f"{_PRECISIONS[-1]}: make a cage with more clearance (2 %), or bind it live")
 

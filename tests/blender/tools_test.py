@@ -31,6 +31,28 @@ class MeshDeform(Test):
         self.assertEqual(model.modifiers[0].type, "MESH_DEFORM")
         self.assertNear(shown(model), posed, 1e-4)
 
+    def test_a_cage_of_the_pose_that_is_shown(self):
+        """It does not enclose the model at rest, so it moves the model after its armature."""
+        model = add_model("rigged_figure.glb")
+        bpy.context.scene.frame_set(20)
+        posed = shown(model)
+        cage = add_box(model, margin=0.02)
+        select(model, cage)
+        self.assertEqual(bpy.ops.cagewright.mesh_deform(), {"FINISHED"})
+        self.assertEqual([modifier.type for modifier in model.modifiers], ["ARMATURE", "MESH_DEFORM"])
+        self.assertNear(shown(model), posed, 1e-4)
+        set_points(cage, points(cage) + [0, 0, 0.2])
+        self.assertNear(shown(model), posed + [0, 0, 0.2], 1e-3)
+        bpy.context.scene.frame_set(40)
+        self.assertGreater(np.abs(shown(model) - posed - [0, 0, 0.2]).max(), 1e-2)  # the rig goes on
+        # One that encloses neither is refused, and the rig is as it was.
+        model.modifiers.remove(model.modifiers[-1])
+        set_points(cage, points(cage) * 0.5)
+        select(model, cage)
+        with self.assertRaisesRegex(RuntimeError, "are outside: .* rest position"):
+            bpy.ops.cagewright.mesh_deform()
+        self.assertEqual(model.find_armature().data.pose_position, "POSE")
+
     def test_a_model_as_it_looks(self):
         model = add_torus()
         model.scale = (-1, 2, 1)
