@@ -18,8 +18,9 @@ def document_of(path):
 
 
 JUDGE = """
-const validator = require(process.argv[1]), fs = require("fs");
-validator.validateBytes(new Uint8Array(fs.readFileSync(process.argv[2]))).then(report =>
+const validator = require(process.argv[1]), fs = require("fs"), path = require("path");
+const read = name => new Uint8Array(fs.readFileSync(path.resolve(path.dirname(process.argv[2]), name)));
+validator.validateBytes(read(process.argv[2]), {maxIssues: 0, externalResourceFunction: uri => Promise.resolve(read(uri))}).then(report =>
   console.log(JSON.stringify(report.issues.messages.filter(m => m.severity < 2))));
 """
 
@@ -116,6 +117,19 @@ class Engines(Test):
         straight = np.linalg.norm(found - found.mean(axis=0), axis=1) - np.linalg.norm(wanted - wanted.mean(axis=0), axis=1)
         self.assertLess(min(np.abs(moved).max(), np.abs(straight).max()), 1e-4 * diagonal(wanted))
         self.assertTrue(document_of(out)["skins"])
+
+    def test_what_the_program_deforms_has_no_faults_but_those_it_came_with(self):
+        """Skins, materials and animations as they were, in either pose, in one file and in two."""
+        figure = model_path("rigged_figure.glb")
+        before = sorted(faults_of(figure))
+        cage, posed = HOME / "cage.ply", HOME / "posed.ply"
+        for pose in ("shown", "bind"):
+            self.run_program("generate", figure, "-o", cage, "--pose", pose, "--vertices", 40, "--rounds", 0, "--quiet")
+            vertices, corners, offsets = program_engine.read_ply(cage)
+            program_engine.write_ply(posed, bent(vertices), corners, offsets)
+            for out in (HOME / f"out_{pose}.glb", HOME / f"out_{pose}.gltf"):
+                self.run_program("deform", figure, cage, posed, "-o", out, "--pose", pose, "--quiet")
+                self.assertEqual(sorted(faults_of(out)), before)
 
     def test_a_skinned_cage_moves_with_the_rig_in_blender(self):
         cage = HOME / "skinned.glb"
