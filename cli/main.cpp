@@ -5,6 +5,7 @@
 
 #include "core/arena.h"
 #include "io/atomic_file.h"
+#include "io/source.h"
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/version.h>
 
@@ -171,10 +172,31 @@ void tell_failure_in_json(const Session& session, int exit_code) {
   ::_exit(exit_code);
 }
 
+/// What is wrong with a command line that names no command but something else; empty: it is another
+/// thing.
+std::string unknown_command(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (!app.get_subcommands().empty() || words.empty() || words.front().starts_with("-")) {
+    return {};
+  }
+  std::string known;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (!command->get_group().empty()) {
+      known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+  }
+  return fmt::format("there is no command {}; there are {}", in_quotes(words.front()), known);
+}
+
 int run_command_line(Session& session, CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
+    if (const std::string what = unknown_command(app); !what.empty() && e.get_exit_code() != 0) {
+      fmt::print(stderr, "cagewright: {}\n", what);
+      tell_in_json(session, json_of_failure("misuse", what, {}), bad_input);
+      return bad_input;
+    }
     if (app.exit(e) == 0) {
       return done; // --help, --version
     }

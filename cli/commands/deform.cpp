@@ -466,6 +466,7 @@ int run(const Options& options, const Session& session) {
 
 void add_deform(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("deform", "Move a model as its cage has moved");
+  command->alias("sequence"); // what people look for who have many poses
   auto options = std::make_shared<Options>();
   add_binding_options(*command, options->binding);
   command

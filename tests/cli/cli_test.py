@@ -231,7 +231,11 @@ class Help(unittest.TestCase):
 
     def test_misuse_ends_with_two(self):
         self.assertEqual(run().returncode, BAD_INPUT)
-        self.assertEqual(run("nonsense").returncode, BAD_INPUT)
+        for words in (["nonsense"], ["--threads", "2", "nonsense", "a.obj"]):
+            misused = run(*words)
+            self.assertEqual(misused.returncode, BAD_INPUT)
+            self.assertRegex(misused.stderr, "no command 'nonsense'; there are generate, .*deform")
+        self.assertIn("deformed-cage", run("sequence", "--help").stdout)
         self.assertEqual(run("generate").returncode, BAD_INPUT)
 
 
