@@ -72,7 +72,10 @@ def _remember_mirror(cage, made):
         return
     normal, offset = found["plane"]["normal"], found["plane"]["offset"]
     partners = np.array(found["vertex_partners"])
-    sides = np.where(partners == np.arange(len(partners)), 0, np.sign(made.vertices @ np.array(normal) - offset))
+    if found.get("in_plane", True):
+        sides = np.where(partners == np.arange(len(partners)), 0, np.sign(made.vertices @ np.array(normal) - offset))
+    else:  # in a pose a left hand may be on the right: the side that the normal points to comes first
+        sides = np.sign(partners - np.arange(len(partners)))
     cage.cagewright.mirror = json.dumps({"partners": partners.tolist(), "sides": sides.astype(int).tolist(),
                                          "normal": normal, "offset": offset})
 

@@ -120,7 +120,8 @@ def generate(vertices, faces=None, *, num_vertices=_DEFAULT_VERTICES, num_faces=
         quads: quads where they can be, as artists like to edit; the cage is valid along both diagonals of each.
         clearance: the least distance between cage and model.
         method: "envelope" (tight, any topology), "boxes" (the union of oriented boxes), or "boxes-improved".
-        symmetry: "auto" (an exact mirror image of itself where the model nearly is), "off", or "x", "y", "z".
+        symmetry: "auto" (an exact mirror image of itself where the model nearly is), "off", "x", "y", "z", or "topology"
+            (of a model in a pose: faces and vertices are paired left to right, and follow the pose).
         pieces: of a model in pieces: "together" in one cage, or "apart" in one each.
         density: V weights above 0: four times the weight makes edges half as long there.
         joints: J x 3 points where limbs bend, or J x 6 with the direction in which each limb goes on: a ring of edges goes

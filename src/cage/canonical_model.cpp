@@ -111,9 +111,12 @@ void bring_back(GeneratedCage& made, TriangleView model, const UnitFrame& frame)
   if (made.mirror) {
     MirrorPlane& plane = made.mirror->plane;
     plane.offset = plane.offset * frame.diagonal + plane.normal.dot(frame.center);
-    const MirrorFrame mirror(plane, bounding_box(model.positions));
-    plane = mirror.plane();
-    pair_exactly(positions, *made.mirror, mirror);
+    made.mirror->error *= frame.diagonal;
+    if (made.mirror->in_plane) {
+      const MirrorFrame mirror(plane, bounding_box(model.positions));
+      plane = mirror.plane();
+      pair_exactly(positions, *made.mirror, mirror);
+    }
   }
   made.triangles.positions = positions; // triangles have the same vertices
   for (Remark& remark : made.remarks) {

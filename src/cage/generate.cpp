@@ -12,6 +12,7 @@
 #include "cage/canonical_model.h"
 #include "cage/mirroring.h"
 #include "cage/own_cage.h"
+#include "cage/paired_surface.h"
 #include "cage/part_maker.h"
 #include "cage/piece_cages.h"
 #include "cage/stage_time.h"
@@ -98,6 +99,23 @@ Result<GeneratedCage> surfaces_apart(TriangleView model, const GenerateOptions& 
   return made;
 }
 
+/// Paired left to right where that can be; otherwise a cage that is not, and why.
+Result<GeneratedCage> paired_or_plain(TriangleView model, const GenerateOptions& options,
+                                      bool are_apart, const Progress& progress) {
+  constexpr double usual = 0.9; // of the time
+  Mirroring plain{std::nullopt, false, "cages of separate pieces cannot be paired; one cage can"};
+  if (!are_apart) {
+    Result<GeneratedCage> paired = paired_surface(model, options, progress.part(0, usual));
+    if (paired || paired.error().code != ErrorCode::no_valid_cage) {
+      return paired;
+    }
+    plain.why_not = paired.error().message;
+  }
+  const Progress rest = progress.part(usual, 1);
+  return are_apart ? surfaces_apart(model, options, plain, rest)
+                   : make_surface(model, options, plain, rest);
+}
+
 /// One closed surface or several, improved.
 /// \param origin  of the user's coordinates
 Result<GeneratedCage> surfaces(TriangleView model, const GenerateOptions& options,
@@ -123,10 +141,16 @@ Result<GeneratedCage> surfaces(TriangleView model, const GenerateOptions& option
     watch.lap("symmetry");
   }
   const Progress making = progress.part(plane_found, 1);
-  Result<GeneratedCage> made = are_apart ? surfaces_apart(model, options, mirroring, making)
-                                         : make_surface(model, options, mirroring, making);
+  Result<GeneratedCage> made = mirroring.by_topology
+                                   ? paired_or_plain(model, options, are_apart, making)
+                               : are_apart ? surfaces_apart(model, options, mirroring, making)
+                                           : make_surface(model, options, mirroring, making);
   if (made) {
     made->times.insert(made->times.begin(), times.begin(), times.end());
+    for (Remark& remark : made->remarks) {
+      const bool was_asked = options.symmetry == Symmetry::topology;
+      remark.is_shortfall |= was_asked && remark.reason == Reason::not_mirrored;
+    }
   }
   return made;
 }

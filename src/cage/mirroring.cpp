@@ -16,6 +16,12 @@ Mirroring choose_mirroring(TriangleView model, const GenerateOptions& options, c
   switch (options.symmetry) {
   case Symmetry::off:
     return {};
+  case Symmetry::topology:
+    if (const auto plane = detect_mirror_plane(model, {.origin = origin}, progress);
+        plane && plane->mean_error <= nearly) {
+      return {plane, false, ""};
+    }
+    return {std::nullopt, false, "", true};
   case Symmetry::automatic:
     // It would count on both sides: that is for those who insist on the symmetry.
     if (!options.density.empty()) {

@@ -19,6 +19,8 @@ struct Mirroring {
   bool is_insisted_on = false;
   /// Why there is no plane, unless that is what was asked for.
   std::string why_not;
+  /// Faces and vertices are to be paired, as positions cannot be: see paired_surface().
+  bool by_topology = false;
 };
 
 /// As the options say.

@@ -21,9 +21,10 @@ constexpr std::array methods = {OptionWord{"envelope", "Envelope"},
 constexpr std::array off_on = {OptionWord{"off", "No"}, OptionWord{"on", "Yes"}};
 constexpr std::array faces_words = {OptionWord{"off", "Triangles"},
                                     OptionWord{"on", "Quads where they can be"}};
-constexpr std::array symmetries = {OptionWord{"off", "Off"}, OptionWord{"auto", "Automatic"},
-                                   OptionWord{"x", "Across X"}, OptionWord{"y", "Across Y"},
-                                   OptionWord{"z", "Across Z"}};
+constexpr std::array symmetries = {
+    OptionWord{"off", "Off"},    OptionWord{"auto", "Automatic"},
+    OptionWord{"x", "Across X"}, OptionWord{"y", "Across Y"},
+    OptionWord{"z", "Across Z"}, OptionWord{"topology", "Of a pose"}};
 constexpr std::array piece_words = {OptionWord{"together", "One cage"},
                                     OptionWord{"apart", "A cage each"}};
 constexpr std::array rules = {OptionWord{"volume", "Volume"}, OptionWord{"published", "Published"}};
@@ -89,7 +90,8 @@ const std::array options_table = {
     CageOption{"symmetry", "Symmetry",
                "Whether the cage is its own mirror image, vertex by vertex. auto: if the model is, "
                "in whatever plane; x, y, z: in the best plane across that axis, even if the model "
-               "is not.",
+               "is not; topology: where the model is in a pose, faces and vertices are paired left "
+               "to right, and follow the pose.",
                OptionGroup::cage, choice<&O::symmetry>(symmetries), is_improved},
     CageOption{"clearance", "Clearance",
                "Least distance between cage and model, as a part of the model's diagonal.",

@@ -150,9 +150,12 @@ nlohmann::json symmetry_json(const GeneratedCage& made) {
                       {"why_not", message_of(made, Reason::not_mirrored)}};
   if (made.mirror) {
     const MirrorPairing& mirror = *made.mirror;
+    j["in_plane"] = mirror.in_plane;
     j["plane"] = {{"normal", json_of(mirror.plane.normal)}, {"offset", mirror.plane.offset}};
-    j["model_mean_error"] = mirror.plane.mean_error;
-    j["model_high_error"] = mirror.plane.high_error;
+    if (mirror.in_plane) {
+      j["model_mean_error"] = mirror.plane.mean_error;
+      j["model_high_error"] = mirror.plane.high_error;
+    }
     j["pairing_error"] = mirror.error;
     j["vertex_partners"] = mirror.vertex_partners;
     j["face_partners"] = mirror.face_partners;
@@ -171,6 +174,11 @@ std::string symmetry_line(const GeneratedCage& made) {
     on_plane += mirror.vertex_partners[v] == v ? 1 : 0;
   }
   const std::size_t pairs = (mirror.vertex_partners.size() - on_plane) / 2;
+  if (!mirror.in_plane) {
+    return fmt::format("  paired left to right, in the model's pose: {} pairs of vertices, {} in "
+                       "the middle\n",
+                       pairs, on_plane);
+  }
   return fmt::format(
       "  mirrored in the plane {}: {} pairs of vertices, {} on it; {}\n", text_of(mirror.plane),
       pairs, on_plane,

@@ -24,7 +24,8 @@ enum class Symmetry {
   automatic, ///< if the model is, in whatever plane
   x,         ///< in the best plane across this axis, even if the model is not
   y,
-  z
+  z,
+  topology, ///< faces and vertices are paired, but positions are not where the model is in a pose
 };
 
 /// What becomes of a model in several pieces.

@@ -27,8 +27,11 @@ struct MirrorPlane {
 
 /// How the parts of a cage are paired.
 struct MirrorPairing {
+  /// False: faces and vertices are paired, but positions are not mirror images, because the model
+  /// is in a pose. The plane is that of a symmetric pose, about in the middle, and has no errors.
+  bool in_plane = true;
   MirrorPlane plane;
-  std::vector<Index> vertex_partners; ///< of each vertex; on the plane, itself
+  std::vector<Index> vertex_partners; ///< of each vertex; on the plane, or in the middle, itself
   std::vector<Index> face_partners;   ///< of each face
   /// The greatest distance of a vertex from the mirror image of its partner, in the model's units:
   /// 0 for planes across one of the world's axes.
