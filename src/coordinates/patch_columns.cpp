@@ -18,8 +18,8 @@ public:
       triangles_.push_back(surface.surface.faces[f].vertices);
     }
     triangle_rule_ = triangle_columns(cage_at_rest, triangles_, unit_);
-    for (const Patch& patch : surface.patches) {
-      patches_.push_back(patch_of(patch.vertices, cage_at_rest));
+    for (const CagePatch& patch : surface.patches) {
+      patches_.push_back(patch_of(patch.patch.vertices, cage_at_rest));
     }
   }
 
@@ -69,12 +69,13 @@ private:
   }
 
   static std::array<double, 4> stretches(const Patch& rest, const Patch& now) {
-    const SquareRule& rule = square_rule(0);
+    static const LineRule rule(4);
     std::array<double, 4> above{};
     std::array<double, 4> below{};
-    for (std::size_t i = 0; i < rule.weight.size(); ++i) {
-      const double u = rule.u[i];
-      const double v = rule.v[i];
+    for (std::size_t i = 0; i < 16; ++i) {
+      const double u = rule.at[i / 4];
+      const double v = rule.at[i % 4];
+      const double weight = rule.weight[i / 4] * rule.weight[i % 4];
       const auto along_u = [&](const Patch& p) { return Vec3(p.position[1] + v * p.position[3]); };
       const auto along_v = [&](const Patch& p) { return Vec3(p.position[2] + u * p.position[3]); };
       const auto normal = [&](const Patch& p) {
@@ -88,8 +89,8 @@ private:
       const double after = normal(now);
       const std::array<double, 4> hats = hats_at(u, v);
       for (std::size_t k = 0; k < 4; ++k) {
-        above[k] += rule.weight[i] * hats[k] * stretched;
-        below[k] += rule.weight[i] * hats[k] * after;
+        above[k] += weight * hats[k] * stretched;
+        below[k] += weight * hats[k] * after;
       }
     }
     std::array<double, 4> sigma{};

@@ -132,6 +132,9 @@ public:
   /// Points near an edge or a vertex.
   [[nodiscard]] LaneFlags near_edges() const { return LaneFlags(near_edges_); }
 
+  /// Points near an edge, a vertex or a face seen so far.
+  [[nodiscard]] LaneFlags near() const { return LaneFlags(flagged_); }
+
   /// Points that PointTerms must do, after all faces were seen: near the cage or not inside it
   /// once.
   [[nodiscard]] LaneFlags flagged() const {

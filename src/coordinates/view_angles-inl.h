@@ -133,6 +133,9 @@ public:
     return height;
   }
 
+  /// Those near edges and vertices, and faces seen so far.
+  [[nodiscard]] LaneFlags near() const { return LaneFlags(flagged_); }
+
   /// After all faces were seen. Inside, what is seen first along each ray is seen from inside: the
   /// sum of all weights is positive; outside it is negative.
   [[nodiscard]] LaneFlags flagged() const {
