@@ -110,18 +110,11 @@ template <class V> struct EdgeIntegrals {
   V delta[3];   ///< d_{e+1} - d_e
 };
 
-/// An end of an edge: t . a, the distance, and 1 over that.
-template <class V> struct EdgeEnd { V tau, d, inverse; };
-
 /// L3 of an edge. Beyond its ends f = tau' / d' - tau / d cancels, and is written otherwise.
-template <class V>
-HWY_INLINE V cube_integral(V square, const EdgeEnd<V>& from, const EdgeEnd<V>& to) {
-  const auto [tau, d, inverse] = from;
-  const auto [tau_next, d_next, inverse_next] = to;
-  const V one = d * (d + absolute(tau));
-  const V other = d_next * (d_next + absolute(tau_next));
-  const V beyond = absolute(other - one) / (one * other);
-  const V beside = (tau_next * inverse_next - tau * inverse) / larger(square, V(1e-290));
+template <class V> HWY_INLINE V cube_integral(V square, V tau, V tau_next, V d, V d_next) {
+  const V beyond = absolute(V(1.0) / (d * (d + absolute(tau))) -
+                            V(1.0) / (d_next * (d_next + absolute(tau_next))));
+  const V beside = (tau_next / d_next - tau / d) / larger(square, V(1e-290));
   return select(tau * tau_next > V(0.0), beyond, beside);
 }
 
@@ -131,6 +124,12 @@ template <class V> struct ElasticTerms {
   V skew[3][3];
   V k[3];
 };
+
+/// A sum over the edges of a face.
+template <class V>
+HWY_INLINE V of_edges(const std::array<double, 3>& factor, const V (&of_edge)[3]) {
+  return fma(V(factor[0]), of_edge[0], fma(V(factor[1]), of_edge[1], V(factor[2]) * of_edge[2]));
+}
 
 template <class V>
 HWY_INLINE ElasticTerms<V> elastic_terms(const Surface::Face& plain, const ElasticFace& face,
@@ -171,26 +170,29 @@ HWY_INLINE ElasticTerms<V> elastic_terms(const Surface::Face& plain, const Elast
   }
   const V normal_part = fma(h, normal_sum, f.omega);
   const V h2 = h * h;
+  // W_i without (g_i . nu_e), the same for all corners.
+  V m11[3];
+  V m12[3];
+  V m22[3];
+  for (std::size_t e = 0; e < 3; ++e) {
+    const auto& nu = face.outward[e];
+    const auto& t = face.along[e];
+    const V rho2 = f.rho[e] * f.rho[e];
+    const V nunu = rho2 * edges.cube[e];
+    const V nut = f.rho[e] * edges.epsilon[e];
+    const V tt = f.log[e] - edges.cube[e] * (rho2 + h2);
+    m11[e] = fma(nunu, V(nu[0] * nu[0]), fma(nut, V(2 * nu[0] * t[0]), tt * V(t[0] * t[0])));
+    m12[e] =
+        fma(nunu, V(nu[0] * nu[1]), fma(nut, V(nu[0] * t[1] + nu[1] * t[0]), tt * V(t[0] * t[1])));
+    m22[e] = fma(nunu, V(nu[1] * nu[1]), fma(nut, V(2 * nu[1] * t[1]), tt * V(t[1] * t[1])));
+  }
   ElasticTerms<V> terms;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto& g = face.gradient[i];
     const V lambda = f.lambda[i];
-    V w11(0.0);
-    V w12(0.0);
-    V w22(0.0);
-    for (std::size_t e = 0; e < 3; ++e) {
-      const auto& nu = face.outward[e];
-      const auto& t = face.along[e];
-      const V slope(plain.slope[i][e]);
-      const V rho2 = f.rho[e] * f.rho[e];
-      const V nunu = slope * rho2 * edges.cube[e];
-      const V nut = slope * f.rho[e] * edges.epsilon[e];
-      const V tt = slope * (f.log[e] - edges.cube[e] * (rho2 + h2));
-      w11 += fma(nunu, V(nu[0] * nu[0]), fma(nut, V(2 * nu[0] * t[0]), tt * V(t[0] * t[0])));
-      w12 += fma(nunu, V(nu[0] * nu[1]),
-                 fma(nut, V(nu[0] * t[1] + nu[1] * t[0]), tt * V(t[0] * t[1])));
-      w22 += fma(nunu, V(nu[1] * nu[1]), fma(nut, V(2 * nu[1] * t[1]), tt * V(t[1] * t[1])));
-    }
+    const V w11 = of_edges(plain.slope[i], m11);
+    const V w12 = of_edges(plain.slope[i], m12);
+    const V w22 = of_edges(plain.slope[i], m22);
     const V gq = fma(V(g[0]), q[0], V(g[1]) * q[1]);
     const V gl = fma(V(g[0]), l[0], V(g[1]) * l[1]);
     const V c = V(loose) * (lambda * f.omega - h * gq);
@@ -266,10 +268,6 @@ EdgeIntegrals<double> edge_integrals(const Surface& surface, const PointTerms& p
                                      std::size_t f) {
   EdgeIntegrals<double> edges;
   const Surface::Face& face = surface.faces[f];
-  const auto end_of = [&](double tau, Index vertex) {
-    const double d = point.distance(vertex);
-    return EdgeEnd<double>{tau, d, 1 / d};
-  };
   for (std::size_t e = 0; e < 3; ++e) {
     const Surface::Edge& edge = surface.edges[face.edges[e]];
     const PointTerms::EdgeTerms& terms = point.edge(face.edges[e]);
@@ -278,8 +276,8 @@ EdgeIntegrals<double> edge_integrals(const Surface& surface, const PointTerms& p
     constexpr double on_edge = 1e-14;
     const bool is_on = terms.is_between() && terms.square < on_edge * on_edge;
     edges.cube[e] = is_on ? 0
-                          : cube_integral(terms.square, end_of(terms.tau, edge.from),
-                                          end_of(terms.tau_next, edge.to));
+                          : cube_integral(terms.square, terms.tau, terms.tau_next,
+                                          point.distance(edge.from), point.distance(edge.to));
     // At a vertex the integral along the other edges there has no value, and no part in any sum.
     const double inverse = d > 1e-14 ? 1 / d : 0;
     const double inverse_next = d_next > 1e-14 ? 1 / d_next : 0;
@@ -416,10 +414,9 @@ TileReport somigliana_tile(const Surface& surface, const ElasticCage& cage,
   const std::size_t vertices = surface.positions.size();
   const SixteenPoints all(tile.points);
   const std::size_t own = LanePoints::scratch_size(surface);
-  AlignedBuffer<double> scratch(own + (surface.edges.size() + (parts + 1) * vertices) * lanes);
+  AlignedBuffer<double> scratch(own + (surface.edges.size() + parts * vertices) * lanes);
   double* const cubes = scratch.data() + own;
-  double* const inverses = cubes + surface.edges.size() * lanes; // of the distances to vertices
-  double* const sums = inverses + vertices * lanes;
+  double* const sums = cubes + surface.edges.size() * lanes;
   const Lanes per_unit(1 / surface.frame.scaled_diagonal());
   std::array<bool, 16> again{};
   for (std::size_t first = 0; first < 16; first += lanes) {
@@ -427,12 +424,6 @@ TileReport somigliana_tile(const Surface& surface, const ElasticCage& cage,
     const Lanes y = Lanes::load(&all.y[first]);
     const Lanes z = Lanes::load(&all.z[first]);
     LanePoints points(surface, &all.x[first], &all.y[first], &all.z[first], scratch.data());
-    for (std::size_t v = 0; v < vertices; ++v) {
-      (Lanes(1.0) / points.distance(v)).store(inverses + v * lanes);
-    }
-    const auto end_of = [&](Lanes tau, Index vertex) HWY_ATTR {
-      return EdgeEnd<Lanes>{tau, points.distance(vertex), Lanes::load(inverses + vertex * lanes)};
-    };
     for (std::size_t i = 0; i < surface.edges.size(); ++i) {
       const Surface::Edge& edge = surface.edges[i];
       const Vec3& from = surface.positions[edge.from];
@@ -445,7 +436,8 @@ TileReport somigliana_tile(const Surface& surface, const ElasticCage& cage,
       const Lanes py = ay - tau * Lanes(edge.along.y());
       const Lanes pz = az - tau * Lanes(edge.along.z());
       const Lanes square = fma(px, px, fma(py, py, pz * pz));
-      cube_integral(square, end_of(tau, edge.from), end_of(tau + Lanes(edge.length), edge.to))
+      cube_integral(square, tau, tau + Lanes(edge.length), points.distance(edge.from),
+                    points.distance(edge.to))
           .store(cubes + i * lanes);
     }
     std::fill_n(sums, parts * vertices * lanes, 0.0);
@@ -456,7 +448,7 @@ TileReport somigliana_tile(const Surface& surface, const ElasticCage& cage,
       EdgeIntegrals<Lanes> edges;
       Lanes inverse[3];
       for (std::size_t e = 0; e < 3; ++e) {
-        inverse[e] = Lanes::load(inverses + face.vertices[e] * lanes);
+        inverse[e] = Lanes(1.0) / terms.distance[e];
       }
       for (std::size_t e = 0; e < 3; ++e) {
         edges.cube[e] = Lanes::load(cubes + face.edges[e] * lanes);
