@@ -10,6 +10,7 @@
 #include "coordinates/patches.h"
 #include "coordinates/surface_coordinates.h"
 #include <cagewright/coordinates/aligned_buffer.h>
+#include <cagewright/coordinates/mean_value.h>
 #include <cagewright/coordinates/quad_mean_value.h>
 
 #include <algorithm>
@@ -358,6 +359,9 @@ quad_mean_value_coordinates(const PolygonMesh& cage, const QuadMeanValueOptions&
   if (!surface) {
     return surface.error();
   }
+  if (surface->patches.empty()) { // that is mean value, which is quicker, and exact far outside
+    return prepare_coordinates(cage, CoordinateSettings(mean_value_kind));
+  }
   return std::shared_ptr<const Coordinates>(
       std::make_shared<QuadMeanValueCoordinates>(cage, *std::move(surface), options.accuracy));
 }
@@ -372,7 +376,7 @@ constinit const CoordinateKind quad_mean_value_kind = {
     .outside = "everywhere",
     .locality = "global",
     .made_by = "quadrature",
-    .cost = "50 ns a point and triangle, a quad being two; 11 in cages of triangles",
+    .cost = "50 ns a point and triangle, a quad being two; in cages of triangles as mean_value",
     .options = kind_options,
     .prepare = prepare_kind,
     .rule = vertex_rule,

@@ -27,7 +27,7 @@ struct QuadGreenOptions {
 ///          are those just inside.
 ///
 /// Errors: invalid_cage.
-/// Cost: some 60 nodes for each quad and point, more close by.
+/// Cost: some 40 nodes for each quad and point, more close by.
 Result<std::shared_ptr<const Coordinates>>
 quad_green_coordinates(const PolygonMesh& cage, const QuadGreenOptions& options = {});
 

@@ -24,8 +24,9 @@ struct QuadMeanValueOptions {
 ///          and outside. On the cage, nearer than 1e-9 of the diagonal to a patch, they are its
 ///          bilinear weights.
 ///
+/// In a cage without quads they are mean value coordinates.
 /// Errors: invalid_cage.
-/// Cost: some 60 nodes for each quad and point, more close by.
+/// Cost: some 40 nodes for each quad and point, more close by.
 Result<std::shared_ptr<const Coordinates>>
 quad_mean_value_coordinates(const PolygonMesh& cage, const QuadMeanValueOptions& options = {});
 
