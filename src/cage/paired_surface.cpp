@@ -15,7 +15,6 @@
 #include <cagewright/mesh/measures.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,10 +35,6 @@ constexpr const char* remedy = "; a plane across an axis can be insisted on";
 
 Error not_paired(std::string why) {
   return {ErrorCode::no_valid_cage, std::move(why) + remedy};
-}
-
-std::string in_percent(double share) {
-  return std::to_string(std::lround(100 * share)) + " %";
 }
 
 /// A closed surface of one piece round the model.
@@ -96,11 +91,9 @@ Result<Straightened> straightened(TriangleView model, const GenerateOptions& opt
   if (!map) {
     return Error::cancelled();
   }
-  if (!map->is_convincing()) {
-    return not_paired("the model has no left and right that are alike, in whatever pose (distances "
-                      "along it differ by " +
-                      in_percent(map->stretch) + " from those between the best partners, and " +
-                      in_percent(map->uncovered) + " of it has none)");
+  if (const std::string why_not = map->why_not(); !why_not.empty()) {
+    return not_paired("the model has no left and right that are alike, in whatever pose: " +
+                      why_not);
   }
   const MirrorFrame frame(map->plane, bounding_box(model.positions));
   const std::vector<Vec3> pose = symmetric_pose(*guide, *map, frame, progress.part(mapped, 1));

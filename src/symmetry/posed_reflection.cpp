@@ -290,9 +290,20 @@ SurfacePoint surface_point_of(const Vec3& p, Index triangle, const Vec3 (&at)[3]
   return result;
 }
 
-bool PosedReflection::is_convincing() const {
-  return stretch <= most_stretch && return_error <= most_return_error &&
-         uncovered <= most_uncovered;
+std::string PosedReflection::why_not() const {
+  const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
+  if (!(uncovered <= most_uncovered)) {
+    return percent(uncovered) + " of its surface has no partner";
+  }
+  if (!(stretch <= most_stretch)) {
+    return "distances along it differ by " + percent(stretch) +
+           " from those between the best partners";
+  }
+  if (!(return_error <= most_return_error)) {
+    return "partners of the best partners are places " + percent(return_error) +
+           " of its diagonal away";
+  }
+  return "";
 }
 
 std::optional<PosedReflection> find_posed_reflection(const TriangleMesh& surface,

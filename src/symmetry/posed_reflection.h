@@ -9,6 +9,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace cagewright {
@@ -43,8 +44,10 @@ struct PosedReflection {
   /// is missing.
   double uncovered = 0;
 
-  /// Whether this is a symmetry of the surface, and not only a map that was bent until it fitted.
-  [[nodiscard]] bool is_convincing() const;
+  /// Why this is no symmetry of the surface, but only a map that was bent until it fitted: a part
+  /// of a sentence. Empty: it is one.
+  [[nodiscard]] std::string why_not() const;
+  [[nodiscard]] bool is_convincing() const { return why_not().empty(); }
 };
 
 /// The best map that there is. The mirror image of the surface is laid onto the surface, bent as

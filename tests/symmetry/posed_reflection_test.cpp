@@ -80,6 +80,7 @@ TEST(PosedReflection, TakesEveryPlaceToItsPartner) {
 TEST(PosedReflection, DoesNotConvinceWhereAnArmIsMissing) {
   const auto map = find_posed_reflection(posed_figure(1, coarse, 0).mesh);
   ASSERT_TRUE(map);
+  EXPECT_NE(map->why_not(), "");
   EXPECT_FALSE(map->is_convincing())
       << map->stretch << ' ' << map->return_error << ' ' << map->uncovered;
 }
