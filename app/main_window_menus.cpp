@@ -349,6 +349,7 @@ void MainWindow::make_view_menu() {
              tr("Shows nothing of the cage but the selection; again: everything"));
   add_action(menu, reveal, tr("Sho&w All"), {"Alt+H"}, tr("Brings back what is hidden"));
   menu->addSeparator();
+  layers_->add_to(menu->addMenu(tr("&Layers")));
   panels_menu_ = menu->addMenu(tr("&Panels"));
   for (QDockWidget* dock : findChildren<QDockWidget*>()) {
     panels_menu_->addAction(dock->toggleViewAction());

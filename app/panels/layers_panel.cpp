@@ -1,9 +1,12 @@
 #include "app/panels/layers_panel.h"
 
+#include <QAction>
+#include <QActionGroup>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QMenu>
 #include <QSignalBlocker>
 #include <QSlider>
 #include <QToolButton>
@@ -73,14 +76,10 @@ LayersPanel::LayersPanel(Session& session, QWidget* parent) : QWidget(parent), s
       auto* box = new QCheckBox(tr(entry.label));
       box->setObjectName(entry.name);
       box->setToolTip(tr(entry.help));
-      connect(box, &QCheckBox::toggled, this, [this, value = entry.value](bool on) {
-        Layers layers = session_.document().layers();
-        layers.*value = on;
-        session_.document().set_layers(layers);
-        ensure_stages();
-      });
+      connect(box, &QCheckBox::toggled, this,
+              [this, value = entry.value](bool on) { set_layer(value, on); });
       layout->addWidget(box);
-      switches_.push_back({box, entry.value});
+      switches_.push_back({box, entry.value, nullptr});
     }
     if (std::string_view(group.title) == "How it was split") {
       auto* row = new QHBoxLayout;
@@ -136,11 +135,48 @@ void LayersPanel::add_looks(QVBoxLayout* layout) {
                        "materials, textures, colors of vertices and faces"));
   row->addWidget(look_, 1);
   layout->addLayout(row);
-  connect(look_, &QComboBox::currentIndexChanged, this, [this](int at) {
-    Layers layers = session_.document().layers();
-    layers.look = static_cast<SurfaceLook>(at);
-    session_.document().set_layers(layers);
-  });
+  connect(look_, &QComboBox::currentIndexChanged, this, &LayersPanel::set_look);
+}
+
+void LayersPanel::add_to(QMenu* menu) {
+  std::size_t number = 0;
+  for (const Group& group : groups()) {
+    for (const Entry& entry : group.entries) {
+      QAction* command = menu->addAction(tr("%1: %2").arg(tr(group.title), tr(entry.label)));
+      command->setObjectName(QString("layer_") + entry.name);
+      command->setStatusTip(tr(entry.help));
+      command->setToolTip(tr(entry.help));
+      command->setCheckable(true);
+      connect(command, &QAction::triggered, this,
+              [this, value = entry.value](bool on) { set_layer(value, on); });
+      switches_[number++].command = command;
+    }
+    menu->addSeparator();
+  }
+  look_commands_ = new QActionGroup(this);
+  for (int look = 0; look < look_->count(); ++look) {
+    QAction* command = menu->addAction(tr("Looks like: %1").arg(look_->itemText(look)));
+    command->setObjectName(QString("look_%1").arg(look));
+    command->setStatusTip(look_->toolTip());
+    command->setToolTip(look_->toolTip());
+    command->setCheckable(true);
+    look_commands_->addAction(command);
+    connect(command, &QAction::triggered, this, [this, look] { set_look(look); });
+  }
+  update_switches();
+}
+
+void LayersPanel::set_layer(bool Layers::*value, bool on) {
+  Layers layers = session_.document().layers();
+  layers.*value = on;
+  session_.document().set_layers(layers);
+  ensure_stages();
+}
+
+void LayersPanel::set_look(int look) {
+  Layers layers = session_.document().layers();
+  layers.look = static_cast<SurfaceLook>(look);
+  session_.document().set_layers(layers);
 }
 
 void LayersPanel::step_depth(int by) {
@@ -166,9 +202,15 @@ void LayersPanel::update_switches() {
   for (const Switch& s : switches_) {
     const QSignalBlocker blocker(s.box);
     s.box->setChecked(layers.*s.value);
+    if (s.command != nullptr) {
+      s.command->setChecked(layers.*s.value);
+    }
   }
   const QSignalBlocker blocker(look_);
   look_->setCurrentIndex(static_cast<int>(layers.look));
+  if (look_commands_ != nullptr) {
+    look_commands_->actions()[look_->currentIndex()]->setChecked(true);
+  }
   update_depth();
 }
 

@@ -8,9 +8,12 @@
 
 #include <vector>
 
+class QAction;
+class QActionGroup;
 class QCheckBox;
 class QComboBox;
 class QLabel;
+class QMenu;
 class QSlider;
 class QVBoxLayout;
 
@@ -24,14 +27,19 @@ public:
 
   /// Shows the boxes one cut deeper, or one less deep.
   void step_depth(int by);
+  /// The same switches, by the names of their groups, and the looks.
+  void add_to(QMenu* menu);
 
 private:
   struct Switch {
     QCheckBox* box;
     bool Layers::*value;
+    QAction* command = nullptr; ///< the same in a menu
   };
 
   void add_looks(QVBoxLayout* layout);
+  void set_layer(bool Layers::*value, bool on);
+  void set_look(int look);
   void update_switches();
   void update_depth();
   void ensure_stages();
@@ -39,6 +47,7 @@ private:
   Session& session_;
   std::vector<Switch> switches_;
   QComboBox* look_ = nullptr;
+  QActionGroup* look_commands_ = nullptr;
   QSlider* depth_ = nullptr;
   QLabel* depth_text_ = nullptr;
 };

@@ -425,6 +425,36 @@ TEST_F(DailyWork, FindsAnyCommandByAPartOfItsName) {
   trigger("dark");
 }
 
+TEST_F(DailyWork, FindsTheSwitchesOfTheLayersToo) {
+  open_model();
+  const auto run = [this](const char* words) {
+    press_at_focus(Qt::Key_F3);
+    QDialog* search = nullptr;
+    ASSERT_TRUE(wait_until([&] {
+      search = window->findChild<QDialog*>("command_search");
+      return search != nullptr && search->isVisible();
+    }));
+    auto* text = search->findChild<QLineEdit*>("command_text");
+    QTest::keyClicks(text, words);
+    QTest::keyClick(text, Qt::Key_Return);
+    ASSERT_TRUE(
+        wait_until([&] { return window->findChild<QDialog*>("command_search") == nullptr; }));
+  };
+  const bool before = document().layers().wireframe;
+  run("wireframe");
+  EXPECT_NE(document().layers().wireframe, before);
+  EXPECT_EQ(find<QCheckBox>("wireframe")->isChecked(), !before);
+  run("wireframe");
+  EXPECT_EQ(document().layers().wireframe, before);
+  run("cage vertices layer");
+  EXPECT_FALSE(document().layers().cage_vertices);
+  run("like metal");
+  EXPECT_EQ(document().layers().look, SurfaceLook::metal);
+  EXPECT_TRUE(find<QAction>("look_3")->isChecked());
+  click("cage_vertices");
+  EXPECT_TRUE(find<QAction>("layer_cage_vertices")->isChecked()) << "menu and panel agree";
+}
+
 TEST_F(DailyWork, OffersWhatCanBeDoneUnderThePointer) {
   open_model();
   generate();
