@@ -2,10 +2,13 @@
 
 #include "app/document/binding.h"
 
+#include <QEvent>
 #include <QFormLayout>
+#include <QGuiApplication>
 #include <QLabel>
 #include <QListWidget>
 #include <QLocale>
+#include <QPalette>
 #include <QVBoxLayout>
 
 #include <array>
@@ -31,18 +34,30 @@ struct Levels {
   double fair;
 };
 
+enum class Cue { good, fair, poor };
+
+/// Read easily on light and on dark windows: a contrast of 4.5 at least.
+const char* color_of(Cue cue) {
+  const bool dark = QGuiApplication::palette().color(QPalette::Window).lightness() < 128;
+  switch (cue) {
+  case Cue::good:
+    return dark ? "#5ccc78" : "#13762a";
+  case Cue::fair:
+    return dark ? "#e0b040" : "#8a5f00";
+  case Cue::poor:
+    break;
+  }
+  return dark ? "#ff7b72" : "#b81f1f";
+}
+
 /// The figure with a word that says whether it is good; larger values are better.
 QString with_cue(const QString& figure, double value, const Levels& levels) {
-  const bool good = value >= levels.good;
-  const bool fair = value >= levels.fair;
+  const Cue cue = value >= levels.good ? Cue::good : value >= levels.fair ? Cue::fair : Cue::poor;
   return QString("%1 <span style='color:%2'>%3</span>")
-      .arg(figure,
-           good   ? "#1f9d3a"
-           : fair ? "#c08a00"
-                  : "#d62a2a",
-           good   ? QObject::tr("good")
-           : fair ? QObject::tr("fair")
-                  : QObject::tr("poor"));
+      .arg(figure, color_of(cue),
+           cue == Cue::good   ? QObject::tr("good")
+           : cue == Cue::fair ? QObject::tr("fair")
+                              : QObject::tr("poor"));
 }
 
 } // namespace
@@ -165,6 +180,14 @@ FiguresPanel::FiguresPanel(Document& document, QWidget* parent)
   update_check();
 }
 
+void FiguresPanel::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange && problems_ != nullptr) {
+    update_figures();
+    update_check();
+  }
+}
+
 void FiguresPanel::choose(int row) {
   const auto& report = document_.check().report;
   if (!report || row < 0 || row >= static_cast<int>(kinds_.size())) {
@@ -255,15 +278,15 @@ void FiguresPanel::update_check() {
   if (!document_.has_cage()) {
     say(tr("No cage yet"), "gray");
   } else if (!document_.offending_faces().empty() && check.state != CageCheck::State::done) {
-    say(tr("Not valid here"), "#d62a2a");
+    say(tr("Not valid here"), color_of(Cue::poor));
   } else if (check.state == CageCheck::State::checking) {
-    say(tr("Checking..."), "#d69b00");
+    say(tr("Checking..."), color_of(Cue::fair));
   } else if (!check.report) {
     say(tr("Not checked"), "gray");
   } else if (check.report->valid()) {
-    say(tr("Valid"), "#1f9d3a");
+    say(tr("Valid"), color_of(Cue::good));
   } else {
-    say(tr("Not valid"), "#d62a2a");
+    say(tr("Not valid"), color_of(Cue::poor));
     for (std::size_t k = 0; k < violation_kinds; ++k) {
       if (check.report->counts[k] > 0) {
         kinds_.push_back(static_cast<ViolationKind>(k));

@@ -27,6 +27,9 @@ Q_SIGNALS:
   /// One of the problems was clicked; clicked again, it is the next of the kind.
   void violationChosen(const cagewright::Violation& violation);
 
+protected:
+  void changeEvent(QEvent* event) override;
+
 private:
   void choose(int row);
   void show_row(const char* key, bool on);

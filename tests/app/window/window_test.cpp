@@ -9,11 +9,14 @@
 #include <QMenu>
 #include <QMessageBox>
 #include <QProgressBar>
+#include <QRegularExpression>
 #include <QSlider>
 #include <QToolButton>
 #include <QTreeWidget>
 #include <QWheelEvent>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 
@@ -191,11 +194,40 @@ TEST_F(Window, RemembersWhereItsPanelsWere) {
   EXPECT_TRUE(find<QDockWidget>("dock_figures")->isVisible());
 }
 
+/// Between two colors, as the guidelines for web pages have it: 4.5 is enough for text.
+double contrast(const QColor& a, const QColor& b) {
+  const auto luminance = [](const QColor& color) {
+    const auto linear = [](double c) {
+      return c <= 0.03928 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    };
+    return 0.2126 * linear(color.redF()) + 0.7152 * linear(color.greenF()) +
+           0.0722 * linear(color.blueF());
+  };
+  const auto [less, more] = std::minmax({luminance(a), luminance(b)});
+  return (more + 0.05) / (less + 0.05);
+}
+
 TEST_F(Window, IsReadableInTheDark) {
   open_model();
   generate();
+  const auto expect_readable_figures = [this] {
+    static const QRegularExpression colored("color:(#[0-9a-f]{6})");
+    int words = 0;
+    for (const QLabel* label : find<QDockWidget>("dock_figures")->findChildren<QLabel*>()) {
+      if (const auto found = colored.match(label->text()); found.hasMatch()) {
+        ++words;
+        EXPECT_GE(contrast(QColor(found.captured(1)), window->palette().color(QPalette::Window)),
+                  4.5)
+            << label->text().toStdString();
+      }
+    }
+    EXPECT_GE(words, 4);
+  };
+  ASSERT_TRUE(wait_until([this] { return !session().checker().busy(); }));
+  expect_readable_figures();
   trigger("dark");
   keep("dark");
+  expect_readable_figures();
   EXPECT_LT(window->palette().color(QPalette::Window).lightness(), 100);
   EXPECT_GT(window->palette().color(QPalette::WindowText).lightness(), 180);
   trigger("dark");
