@@ -1,21 +1,23 @@
 // The window answers at once, however large the model: nothing that is done with it keeps the
 // window's own thread busy for long. Measured as that thread's work, which does not depend on what
-// else the machine has to do.
+// else the machine has to do, and by a yardstick, which is as slow as the machine is.
 #include "app/application.h"
+#include "app/document/model.h"
 #include "window_fixture.h"
+
+#include <oneapi/tbb/task_arena.h>
+
+#include <ctime>
 
 namespace cagewright::app {
 namespace {
 
 class LargeModel : public Window {
 protected:
-  /// What may pass from one answer to the next, in milliseconds of work: a tenth of a second is
-  /// felt. The model has a fifth of a million triangles.
-#if defined(__SANITIZE_ADDRESS__)
-  static constexpr double most_work = 300;
-#else
-  static constexpr double most_work = 60;
-#endif
+  /// What may pass from one answer to the next, as a share of the work of preparing the model, which
+  /// is done beside the window. The model has a fifth of a million triangles: on a machine of today
+  /// it is some 60 ms, and a tenth of a second is felt.
+  static constexpr double most_share = 0.5;
 
   void SetUp() override {
     Window::SetUp();
@@ -25,11 +27,17 @@ protected:
     }
     ASSERT_TRUE(write_mesh(PolygonMesh(torus), path("model.ply").toStdString()));
     ASSERT_TRUE(write_mesh(PolygonMesh(make_torus(0.62, 16, 8)), path("cage.obj").toStdString()));
+    most_work_ = most_share * std::min(work_of_preparing(torus), work_of_preparing(torus));
   }
 
-  static Application& application() {
-    return *static_cast<Application*>(qApp);
+  /// Milliseconds of one thread.
+  static double work_of_preparing(const TriangleMesh& mesh) {
+    const std::clock_t begin = std::clock();
+    tbb::task_arena(1).execute([&] { EXPECT_TRUE(prepare_model(PolygonMesh(mesh), {})); });
+    return 1000 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   }
+
+  static Application& application() { return *static_cast<Application*>(qApp); }
 
   /// What was done since the last question, and what comes of it until all is drawn.
   void expect_answers(const char* what) {
@@ -38,7 +46,7 @@ protected:
              view().canvas()->shows_all();
     }));
     const Application::Turn& turn = application().hardest_turn();
-    EXPECT_LT(turn.work, most_work) << what << ": " << turn.what.toStdString();
+    EXPECT_LT(turn.work, most_work_) << what << ": " << turn.what.toStdString();
     application().forget_turns();
   }
   /// As an event of the window.
@@ -54,6 +62,9 @@ protected:
       document().set_layers(layers);
     });
   }
+
+private:
+  double most_work_ = 0; // milliseconds
 };
 
 TEST_F(LargeModel, NeverKeepsTheWindowFromAnswering) {
