@@ -292,6 +292,7 @@ void MainWindow::connect_session() {
   connect(viewport_, &Viewport::regionPainted, &session_, [this](const std::vector<Index>& faces) {
     session_.choose_region(tr("the painted part"), faces);
   });
+  connect(viewport_, &Viewport::regionOutlined, &session_, &Session::choose_outlined);
   connect(viewport_, &Viewport::menuRequested, this, &MainWindow::show_view_menu);
   connect(&session_, &Session::bindingDoubtful, this, &MainWindow::ask_about_binding);
   session_.set_camera_source([this] { return viewport_->camera_state(); });

@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
+#include <numeric>
 #include <utility>
 
 namespace cagewright::app {
@@ -59,6 +61,15 @@ bool fits(const std::vector<Index>& faces, const Model& model) {
 
 bool same_coordinates(const CoordinateSettings& a, const CoordinateSettings& b) {
   return &a.kind() == &b.kind() && a.text() == b.text();
+}
+
+QString what_was_written(const std::vector<fs::path>& files) {
+  return files.size() == 1 ? QObject::tr("Wrote %1").arg(name_of(files.front()))
+         : files.size() == 2
+             ? QObject::tr("Wrote %1 and %2").arg(name_of(files.front()), name_of(files.back()))
+             : QObject::tr("Wrote %L1 files, %2 to %3")
+                   .arg(files.size())
+                   .arg(name_of(files.front()), name_of(files.back()));
 }
 
 SharedPositions shared(std::span<const Vec3> positions) {
@@ -455,6 +466,12 @@ void Session::restore(const Project& project, std::shared_ptr<const Model> model
   state.region = std::move(region);
   state.binding = std::move(binding);
   document_.set_state(state);
+  if (project.frame && document_.mode() == Mode::deform) {
+    document_.set_time(project.frame);
+    if (!project.shows_frame) { // it stands there, and shows the edited pose
+      document_.set_time(std::nullopt);
+    }
+  }
   editor_.undo_stack().clear();
   document_.set_layers(project.layers);
   document_.set_tools(project.tools);
@@ -475,53 +492,145 @@ void Session::generate() {
   start(tr("Generate"),
         [this, caged = document_.caged(), settings = settings_,
          painted = document_.state().density](const Progress& progress) -> Result<Job::Apply> {
-          Result<MadeCage> made = make_cage(caged, settings, painted, progress);
+          CagedModel part = caged; // what the cage is for from now on
+          Progress making = progress;
+          if (settings.options.ignore_specks) {
+            Result<std::shared_ptr<const Region>> rest =
+                region_without_specks(caged, progress.part(0, 0.05));
+            if (!rest) {
+              return rest.error();
+            }
+            part.region = *rest ? *std::move(rest) : caged.region;
+            making = progress.part(0.05, 1);
+          }
+          Result<MadeCage> made = make_cage(part, settings, painted, making);
           if (!made) {
             return made.error();
           }
-          return Job::Apply([this, model = caged.shared_model(), made = *made] {
-            if (document_.caged().shared_model() != model) {
-              return; // another one was opened or chosen meanwhile
-            }
-            editor_.replace_cage(made.cage, made.stages, tr("Generate Cage"));
-            const QString what = tr("A valid cage of %L1 vertices and %L2 faces")
-                                     .arg(made.cage->positions.size())
-                                     .arg(made.cage->face_count());
-            Q_EMIT message(made.remark.isEmpty() ? what : what + "; " + made.remark);
-          });
+          return Job::Apply(
+              [this, model = caged.shared_model(), region = part.region, made = *made] {
+                if (document_.caged().shared_model() != model) {
+                  return; // another one was opened or chosen meanwhile
+                }
+                editor_.replace_cage(made.cage, made.stages, region, tr("Generate Cage"));
+                const QString what = tr("A valid cage of %L1 vertices and %L2 faces")
+                                         .arg(made.cage->positions.size())
+                                         .arg(made.cage->face_count());
+                Q_EMIT message(made.remark.isEmpty() ? what : what + "; " + made.remark);
+              });
         });
+}
+
+bool Session::can_choose_region(const QString& title) {
+  if (!document_.has_model()) {
+    Q_EMIT message(tr("Open a model first"));
+    return false;
+  }
+  if (document_.mode() == Mode::deform) {
+    Q_EMIT message(tr("%1: the model is bound to this cage; go back to refining first").arg(title));
+    return false;
+  }
+  return true;
 }
 
 void Session::choose_region(const QString& name, std::vector<Index> faces) {
   const QString title = tr("Cage for a Part");
-  if (!document_.has_model()) {
-    Q_EMIT message(tr("Open a model first"));
-    return;
-  }
-  if (document_.mode() == Mode::deform) {
-    Q_EMIT message(tr("%1: the model is bound to this cage; go back to refining first").arg(title));
+  if (!can_choose_region(title)) {
     return;
   }
   if (faces.size() == document_.model()->mesh.face_count()) {
     choose_whole_model();
     return;
   }
+  start_region(title,
+               [name, faces = std::move(faces),
+                model = document_.model()](const Progress& progress) -> Result<ChosenRegion> {
+                 Result<std::shared_ptr<const Region>> made =
+                     make_region(*model, faces, name, progress);
+                 return made ? Result(ChosenRegion{*std::move(made), {}}) : made.error();
+               });
+}
+
+void Session::choose_outlined(ScreenOutline outline, bool takes_away) {
+  const QString title = tr("Cage for a Part");
+  if (!can_choose_region(title)) {
+    return;
+  }
+  start_region(title,
+               [name = tr("the painted part"), caged = document_.caged(), takes_away,
+                outline = std::move(outline)](const Progress& progress) -> Result<ChosenRegion> {
+                 const Model& model = *caged.whole;
+                 const Result<std::vector<Index>> found =
+                     outlined_faces(model.mesh, model.bvh, outline, progress.part(0, 0.5));
+                 if (!found) {
+                   return found.error();
+                 }
+                 if (found->empty()) {
+                   return ChosenRegion{nullptr, tr("Nothing of the model is within the outline")};
+                 }
+                 std::vector<Index> faces;
+                 std::vector<Index> before;
+                 if (caged.region) {
+                   before = caged.region->faces;
+                 } else if (takes_away) { // from all of it
+                   before.resize(model.mesh.face_count());
+                   std::iota(before.begin(), before.end(), Index{0});
+                 }
+                 if (takes_away) {
+                   std::ranges::set_difference(before, *found, std::back_inserter(faces));
+                 } else {
+                   std::ranges::set_union(before, *found, std::back_inserter(faces));
+                 }
+                 if (faces.size() == model.mesh.face_count()) {
+                   return ChosenRegion();
+                 }
+                 Result<std::shared_ptr<const Region>> made =
+                     make_region(model, std::move(faces), name, progress.part(0.5, 1));
+                 return made ? Result(ChosenRegion{*std::move(made), {}}) : made.error();
+               });
+}
+
+void Session::choose_all_but_specks() {
+  const QString title = tr("Cage for All but Specks");
+  if (!can_choose_region(title)) {
+    return;
+  }
+  start_region(title,
+               [whole = document_.model()](const Progress& progress) -> Result<ChosenRegion> {
+                 Result<std::shared_ptr<const Region>> made =
+                     region_without_specks({.whole = whole}, progress);
+                 if (!made) {
+                   return made.error();
+                 }
+                 return ChosenRegion{*made, *made ? QString()
+                                                  : tr("There are no specks: no tiny piece is far "
+                                                       "from the rest")};
+               });
+}
+
+void Session::start_region(const QString& title, const MakeRegion& make) {
   start(title,
-        [this, title, name, faces = std::move(faces),
+        [this, title, make,
          model = document_.model()](const Progress& progress) -> Result<Job::Apply> {
-          Result<std::shared_ptr<const Region>> region = make_region(*model, faces, name, progress);
-          if (!region) {
-            return region.error();
+          Result<ChosenRegion> chosen = make(progress);
+          if (!chosen) {
+            return chosen.error();
           }
-          return Job::Apply([this, title, model, region = *region] {
+          return Job::Apply([this, title, model, chosen = *std::move(chosen)] {
             if (document_.model() != model || document_.mode() == Mode::deform) {
               return; // another one was opened meanwhile
             }
-            editor_.set_region(region, title);
-            Q_EMIT message(tr("The cage is for %1 now: %L2 of %L3 faces")
-                               .arg(region->name)
-                               .arg(region->faces.size())
-                               .arg(model->mesh.face_count()));
+            if (!chosen.nothing.isEmpty()) {
+              Q_EMIT message(chosen.nothing);
+            } else if (!chosen.region) {
+              choose_whole_model();
+            } else {
+              editor_.set_region(chosen.region, title);
+              Q_EMIT message(tr("The cage is for %1 now: %L2 of %L3 faces")
+                                 .arg(chosen.region->name)
+                                 .arg(chosen.region->faces.size())
+                                 .arg(model->mesh.face_count()));
+            }
           });
         });
 }
@@ -732,6 +841,10 @@ Project Session::project() const {
   project.layers = document_.layers();
   project.tools = document_.tools();
   project.camera = camera_ ? camera_() : QJsonObject();
+  if (project.bound) {
+    project.frame = document_.frame();
+    project.shows_frame = document_.time().has_value();
+  }
   return project;
 }
 
@@ -769,10 +882,40 @@ bool Session::save_cage(const fs::path& path) {
   return true;
 }
 
-void Session::start_export(const QString& title, std::vector<fs::path> paths,
-                           std::vector<SharedPositions> poses) {
+std::vector<fs::path> Session::files_of_parts(const std::vector<fs::path>& paths) const {
+  std::vector<fs::path> files;
+  for (const fs::path& path : paths) {
+    for (std::size_t part = 0; part < document_.model()->parts.size(); ++part) {
+      files.push_back(path_of_part(*document_.model(), part, path));
+    }
+  }
+  return files;
+}
+
+bool Session::may_replace_files(const QString& title, const fs::path& chosen,
+                                const std::vector<fs::path>& files) {
+  std::vector<fs::path> there;
+  std::ranges::copy_if(files, std::back_inserter(there), [&](const fs::path& file) {
+    std::error_code ignored;
+    return file != chosen && fs::exists(file, ignored);
+  });
+  return there.empty() || !ask_ ||
+         ask_({title,
+               there.size() == 1 ? tr("%1 is there already.").arg(name_of(there.front()))
+                                 : tr("%L1 of the files are there already, %2 to %3.")
+                                       .arg(there.size())
+                                       .arg(name_of(there.front()), name_of(there.back())),
+               there.size() == 1 ? tr("Replace It") : tr("Replace Them")});
+}
+
+void Session::start_export(const QString& title, const fs::path& chosen,
+                           std::vector<fs::path> paths, std::vector<SharedPositions> poses) {
   if (document_.mode() != Mode::deform) {
     Q_EMIT failed(title, tr("Bind the model to its cage first: only then can it be deformed."));
+    return;
+  }
+  const std::vector<fs::path> files = files_of_parts(paths);
+  if (!may_replace_files(title, chosen, files)) {
     return;
   }
   std::vector<ModelOutput> outputs;
@@ -781,28 +924,22 @@ void Session::start_export(const QString& title, std::vector<fs::path> paths,
   }
   start(
       title,
-      [this, outputs, caged = document_.caged(), rest = document_.state().rest,
+      [this, files, outputs, caged = document_.caged(), rest = document_.state().rest,
        binding = document_.state().binding](const Progress& progress) -> Result<Job::Apply> {
         Result<std::vector<FileNote>> notes =
             export_models(caged, *rest, binding->settings(), outputs, progress);
         if (!notes) {
           return notes.error();
         }
-        return Job::Apply([this, outputs, notes = *std::move(notes)] {
-          const QString what =
-              outputs.size() == 1
-                  ? tr("Wrote %1").arg(name_of(outputs.front().path))
-                  : tr("Wrote %L1 files, %2 to %3")
-                        .arg(outputs.size())
-                        .arg(name_of(outputs.front().path), name_of(outputs.back().path));
-          Q_EMIT message(with_notes(what, notes));
+        return Job::Apply([this, files, notes = *std::move(notes)] {
+          Q_EMIT message(with_notes(what_was_written(files), notes));
         });
       },
       Kind::writes);
 }
 
 void Session::export_model(const fs::path& path) {
-  start_export(tr("Export Model"), {path}, {shared(document_.shown_cage_positions())});
+  start_export(tr("Export Model"), path, {path}, {shared(document_.shown_cage_positions())});
 }
 
 void Session::export_poses(const fs::path& path) {
@@ -820,7 +957,7 @@ void Session::export_poses(const fs::path& path) {
     Q_EMIT failed(tr("Export Poses"), tr("There are no poses yet. Keep some in the panel Poses."));
     return;
   }
-  start_export(tr("Export Poses"), std::move(paths), std::move(poses));
+  start_export(tr("Export Poses"), path, std::move(paths), std::move(poses));
 }
 
 void Session::export_sequence(const fs::path& path, int step) {
@@ -836,7 +973,7 @@ void Session::export_sequence(const fs::path& path, int step) {
     paths.push_back(with_suffix(path, QString("-%1").arg(frame, 4, 10, QChar('0'))));
     poses.push_back(shared(cage_at(line, frame)));
   }
-  start_export(tr("Export Sequence"), std::move(paths), std::move(poses));
+  start_export(tr("Export Sequence"), path, std::move(paths), std::move(poses));
 }
 
 void Session::export_animation(const fs::path& path) {
@@ -845,9 +982,13 @@ void Session::export_animation(const fs::path& path) {
     Q_EMIT failed(title, tr("There are no keyframes yet. Set some in the panel Time Line."));
     return;
   }
+  const std::vector<fs::path> files = files_of_parts({path});
+  if (!may_replace_files(title, path, files)) {
+    return;
+  }
   start(
       title,
-      [this, path, caged = document_.caged(), rest = document_.state().rest,
+      [this, path, files, caged = document_.caged(), rest = document_.state().rest,
        binding = document_.state().binding,
        line = document_.state().time_line](const Progress& progress) -> Result<Job::Apply> {
         if (Status s =
@@ -855,7 +996,7 @@ void Session::export_animation(const fs::path& path) {
             !s) {
           return s.error();
         }
-        return Job::Apply([this, path] { Q_EMIT message(tr("Wrote %1").arg(name_of(path))); });
+        return Job::Apply([this, files] { Q_EMIT message(what_was_written(files)); });
       },
       Kind::writes);
 }

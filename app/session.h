@@ -6,6 +6,7 @@
 #include "app/document/document.h"
 #include "app/document/generate_settings.h"
 #include "app/document/project_file.h"
+#include "app/edit/outlined_faces.h"
 #include "app/jobs/checker.h"
 #include "app/jobs/deform_loop.h"
 #include "app/jobs/job_runner.h"
@@ -72,10 +73,14 @@ public:
   void set_asker(std::function<bool(const Question&)> ask) { ask_ = std::move(ask); }
 
   void generate();
-  /// Splits the model into boxes, to look at.
   /// The cage is for these faces of the model alone, ascending; the rest stays where it is.
   void choose_region(const QString& name, std::vector<Index> faces);
   void choose_whole_model();
+  /// The faces within an outline besides, or no more.
+  void choose_outlined(ScreenOutline outline, bool takes_away);
+  /// The cage is for all but tiny pieces far from the rest; says so if there are none.
+  void choose_all_but_specks();
+  /// Splits the model into boxes, to look at.
   void make_stages();
   enum class Doubts { tell, ignore };
   /// Judges the cage first: unless doubts are ignored, one that is not valid becomes
@@ -137,8 +142,15 @@ private:
                     bool recovered);
   void restore(const Project& project, std::shared_ptr<const Model> model,
                std::shared_ptr<const Region> region, std::shared_ptr<const Binding> binding);
-  void start_export(const QString& title, std::vector<std::filesystem::path> paths,
-                    std::vector<SharedPositions> poses);
+  /// \param chosen  the path that was asked for, of which those of the files are made
+  void start_export(const QString& title, const std::filesystem::path& chosen,
+                    std::vector<std::filesystem::path> paths, std::vector<SharedPositions> poses);
+  /// What is written where these paths are asked for: a file for each part of the model.
+  [[nodiscard]] std::vector<std::filesystem::path>
+  files_of_parts(const std::vector<std::filesystem::path>& paths) const;
+  /// Asks whether files may be replaced, besides the one that was chosen.
+  [[nodiscard]] bool may_replace_files(const QString& title, const std::filesystem::path& chosen,
+                                       const std::vector<std::filesystem::path>& files);
   enum class Kind { replaceable, writes, binds_anew, compares };
   bool start(const QString& title, Job::Work work, Kind kind = Kind::replaceable);
   /// The same, but what is under way makes room: it is cancelled, or, where it writes files, ended
@@ -147,6 +159,14 @@ private:
   /// Asks whether poses and deformations that only fit the present cage may go.
   [[nodiscard]] bool may_replace_cage(const QString& title, const QString& go_on);
   bool report(const QString& title, const Status& status);
+  /// Whether what the cage is for can be chosen; says why not.
+  bool can_choose_region(const QString& title);
+  struct ChosenRegion {
+    std::shared_ptr<const Region> region; ///< null: the whole model
+    QString nothing;                      ///< why nothing changes; empty: it does
+  };
+  using MakeRegion = std::function<Result<ChosenRegion>(const Progress&)>;
+  void start_region(const QString& title, const MakeRegion& make);
   /// Whether the cage can be changed as a whole; says why not.
   bool can_repair(const QString& title);
   void go_on(Then then);

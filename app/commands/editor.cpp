@@ -146,8 +146,15 @@ void Editor::hide_faces(std::vector<Index> faces, const QString& text) {
 
 void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
                           std::shared_ptr<const BoxDecomposition> stages, const QString& text) {
+  replace_cage(std::move(cage), std::move(stages), document_.state().region, text);
+}
+
+void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
+                          std::shared_ptr<const BoxDecomposition> stages,
+                          std::shared_ptr<const Region> region, const QString& text) {
   const QString lost = lost_poses();
   State state = without_cage();
+  state.region = std::move(region);
   state.selection.mode = document_.selection().mode;
   state.stages = stages ? std::move(stages) : document_.stages();
   state.cage = std::make_shared<const std::vector<Vec3>>(cage->positions);

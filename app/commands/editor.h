@@ -69,6 +69,10 @@ public:
   /// Another cage, to be refined; with the stages it was made from, or the present ones.
   void replace_cage(std::shared_ptr<const PolygonMesh> cage,
                     std::shared_ptr<const BoxDecomposition> stages, const QString& text);
+  /// The same, for another part of the model.
+  void replace_cage(std::shared_ptr<const PolygonMesh> cage,
+                    std::shared_ptr<const BoxDecomposition> stages,
+                    std::shared_ptr<const Region> region, const QString& text);
   /// The cage after an edit of its topology, in refine mode: vertices and faces as they come. Poses
   /// and keyframes, which fit the old one, go.
   void edit_topology(PolygonMesh cage, Selection selection, const QString& text);
@@ -107,9 +111,9 @@ public:
 
   /// The points by which the model is dragged.
   void set_pins(std::vector<Pin> pins, const QString& text);
-  /// Where the cage is to be finer; null: nowhere.
   /// What of the model the cage is for; null: all of it.
   void set_region(std::shared_ptr<const Region> region, const QString& text);
+  /// Where the cage is to be finer; null: nowhere.
   void set_density(SharedDensity density, const QString& text);
 
   void set_keyframe(int frame);

@@ -448,9 +448,14 @@ QByteArray format_project(const Project& project, const fs::path& path) {
     json["saved_as"] = QString::fromStdString(project.saved_as.string());
   }
   json["generate"] = to_json(project.settings);
-  json["view"] = QJsonObject{{"camera", project.camera},
-                             {"layers", fields_to_json(project.layers)},
-                             {"tools", fields_to_json(project.tools)}};
+  QJsonObject view{{"camera", project.camera},
+                   {"layers", fields_to_json(project.layers)},
+                   {"tools", fields_to_json(project.tools)}};
+  if (project.frame) {
+    view["frame"] = *project.frame;
+    view["shows_frame"] = project.shows_frame;
+  }
+  json["view"] = view;
   return QJsonDocument(json).toJson();
 }
 
@@ -526,6 +531,17 @@ Result<Project> parse_project(const QByteArray& bytes, const fs::path& path) {
       fields_from_json<Layers>(view["layers"].toObject(), "view.layers.", project.notes);
   project.tools =
       fields_from_json<ToolSettings>(view["tools"].toObject(), "view.tools.", project.notes);
+  if (const QJsonValue frame = view["frame"]; !frame.isUndefined()) {
+    const TimeLine& line = project.state.time_line;
+    if (const auto fault =
+            fault_of(frame, "view.frame",
+                     {static_cast<double>(line.first), static_cast<double>(line.last)}, false)) {
+      project.notes.push_back(*fault);
+    } else {
+      project.frame = frame.toDouble();
+      project.shows_frame = view["shows_frame"].toBool();
+    }
+  }
   project.saved_as = json["saved_as"].toString().toStdString();
   return project;
 }

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct Project {
   Layers layers;
   ToolSettings tools;
   QJsonObject camera;
+  std::optional<double> frame;    ///< where the time line stands; none: at its first
+  bool shows_frame = false;       ///< what it has there, and not the edited pose
   std::filesystem::path saved_as; ///< of work kept aside: the project it belongs to; or empty
   std::vector<std::string> notes; ///< what was read was out of range and keeps its default
 };

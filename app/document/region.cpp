@@ -1,5 +1,7 @@
 #include "app/document/region.h"
 
+#include <cagewright/cage/specks.h>
+
 #include <QObject>
 
 #include <algorithm>
@@ -82,6 +84,28 @@ Result<std::shared_ptr<const Region>> make_region(const Model& whole, std::vecto
   region->faces = std::move(faces);
   region->model = *std::move(model);
   return std::shared_ptr<const Region>(std::move(region));
+}
+
+Result<std::shared_ptr<const Region>> region_without_specks(const CagedModel& caged,
+                                                            const Progress& progress) {
+  const Model& model = caged.model();
+  const Result<Specks> specks = find_specks(model.view(), progress.part(0, 0.5));
+  if (!specks) {
+    return specks.error();
+  }
+  if (specks->count == 0) {
+    return std::shared_ptr<const Region>();
+  }
+  const std::vector<bool> stays = specks->faces_in_none(model.mesh);
+  std::vector<Index> faces;
+  for (Index f = 0; f < stays.size(); ++f) {
+    if (stays[f]) {
+      faces.push_back(caged.region ? caged.region->faces[f] : f);
+    }
+  }
+  const QString name = caged.region ? QObject::tr("%1 but specks").arg(caged.region->name)
+                                    : QObject::tr("all but specks");
+  return make_region(*caged.whole, std::move(faces), name, progress.part(0.5, 1));
 }
 
 std::vector<NamedPart> named_parts(const Model& model) {

@@ -18,7 +18,7 @@ namespace cagewright::app {
 /// Never changed, shared by the document and the jobs.
 struct Region {
   QString name;                ///< for people
-  std::vector<Index> faces;    ///< of the whole model's mesh, ascending; some, and not all
+  std::vector<Index> faces;    ///< of the whole model's mesh, ascending; at least one
   std::vector<Index> vertices; ///< R of the whole model's, ascending: those that the faces use
   std::shared_ptr<const Model> model; ///< these faces alone, of R vertices
 };
@@ -63,6 +63,12 @@ struct CagedModel {
 /// \param faces  of the whole model's mesh, ascending
 Result<std::shared_ptr<const Region>> make_region(const Model& whole, std::vector<Index> faces,
                                                   QString name, const Progress& progress = {});
+
+/// Of what the cage is for, all but specks: tiny pieces far from the rest, and vertices that no
+/// face uses. Null: there are none.
+/// Errors: those of find_specks() and make_region().
+Result<std::shared_ptr<const Region>> region_without_specks(const CagedModel& caged,
+                                                            const Progress& progress = {});
 
 /// A named part of the model: one of its files, or an object or group of one.
 struct NamedPart {

@@ -73,6 +73,8 @@ QString remark_of(const GeneratedCage& made, const GenerateOptions& options) {
       remarks.append(QObject::tr("not as asked for: %1").arg(message));
     } else if (remark.reason == Reason::not_mirrored) {
       remarks.append(QObject::tr("not mirrored: %1").arg(message));
+    } else if (remark.reason == Reason::specks_enclosed) {
+      remarks.append(QObject::tr("%1; Cage for: All but Specks leaves them out").arg(message));
     } else {
       remarks.append(message);
     }

@@ -52,6 +52,41 @@ QLabel* explanation(const QString& text) {
   return label;
 }
 
+/// A button with a menu that says what is chosen, as much of it as there is room for.
+class ChoiceButton final : public QToolButton {
+public:
+  ChoiceButton() {
+    setPopupMode(QToolButton::InstantPopup);
+    setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed); // as wide as its column, not its text
+    setStyleSheet(QString("QToolButton { padding-right: %1px; } QToolButton::menu-indicator { "
+                          "subcontrol-origin: padding; subcontrol-position: right center; right: "
+                          "3px; }")
+                      .arg(room_for_arrow));
+  }
+
+  void say(const QString& text) {
+    whole_ = text;
+    setAccessibleDescription(text);
+    show_text();
+  }
+
+protected:
+  void resizeEvent(QResizeEvent* event) override {
+    QToolButton::resizeEvent(event);
+    show_text();
+  }
+
+private:
+  static constexpr int room_for_arrow = 14;
+  static constexpr int rims = 8; // of the button, and between text and rim
+
+  void show_text() {
+    setText(fontMetrics().elidedText(whole_, Qt::ElideRight, width() - room_for_arrow - rims));
+  }
+
+  QString whole_;
+};
+
 QString big_button_style() {
   return "QPushButton { padding: 8px; font-weight: bold; }";
 }
@@ -171,13 +206,11 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
 
 /// What of the model the cage is for: all, objects of it, or what is painted.
 void GeneratePanel::add_region(QGridLayout* grid) {
-  region_ = new QToolButton;
+  region_ = new ChoiceButton;
   region_->setObjectName("region");
   region_->setToolTip(tr("What of the model the cage is for: all of it, some of its objects, or "
                          "what you paint. The rest stays where it is"));
   region_->setAccessibleName(tr("Cage for"));
-  region_->setPopupMode(QToolButton::InstantPopup);
-  region_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   region_->setMinimumWidth(60);
   auto* menu = new QMenu(region_);
   menu->setToolTipsVisible(true);
@@ -188,7 +221,7 @@ void GeneratePanel::add_region(QGridLayout* grid) {
   label->setBuddy(region_);
   const int row = grid->rowCount();
   grid->addWidget(label, row, 0);
-  grid->addWidget(region_, row, 1);
+  grid->addWidget(region_, row, 1, 1, 2); // it has no "?", and the text is long
 }
 
 void GeneratePanel::show_parts() {
@@ -203,6 +236,10 @@ void GeneratePanel::show_parts() {
   whole->setCheckable(true);
   whole->setChecked(!region);
   connect(whole, &QAction::triggered, &session_, &Session::choose_whole_model);
+  QAction* rest = menu->addAction(tr("All but Specks"));
+  rest->setToolTip(tr("Without tiny pieces far from the rest, such as dust in a scan, and vertices "
+                      "that no face uses"));
+  connect(rest, &QAction::triggered, &session_, &Session::choose_all_but_specks);
   menu->addSeparator();
   for (NamedPart& part : named_parts(*document.model())) {
     QAction* action = menu->addAction(part.name);
@@ -214,7 +251,7 @@ void GeneratePanel::show_parts() {
   }
   menu->addSeparator();
   QAction* paint = menu->addAction(icon("tool_region"), tr("Paint It..."));
-  paint->setToolTip(tr("With the brush, on the model"));
+  paint->setToolTip(tr("With the brush, on the model, or with Ctrl by drawing round it"));
   connect(paint, &QAction::triggered, this, [this] {
     ToolSettings tools = session_.document().tools();
     tools.tool = Tool::region;
@@ -250,9 +287,7 @@ void GeneratePanel::take_part(const NamedPart& part, bool on) {
 void GeneratePanel::update_region() {
   const Document& document = session_.document();
   const auto& region = document.state().region;
-  const QString name = region ? region->name : tr("the whole model");
-  constexpr int most_letters = 24;
-  region_->setText(name.size() > most_letters ? name.left(most_letters - 1) + QChar(0x2026) : name);
+  static_cast<ChoiceButton*>(region_)->say(region ? region->name : tr("the whole model"));
   region_->setEnabled(document.has_model() && document.mode() == Mode::refine);
 }
 

@@ -35,7 +35,7 @@ constexpr std::array<Named, 8> tool_names = {
           "Ctrl+wheel: size of the brush"},
     Named{"tool_region", "Paint What the Cage Is For",
           "Paint the part of the model that the cage is for; the rest stays where it is. Shift: "
-          "erase, Ctrl+wheel: size of the brush"}};
+          "erase, Ctrl: draw round it, Ctrl+wheel: size of the brush"}};
 
 struct Switch {
   Named named;

@@ -9,6 +9,7 @@
 #include "app/edit/edit_cage.h"
 #include "app/edit/gizmo.h"
 #include "app/edit/orbit_camera.h"
+#include "app/edit/outlined_faces.h"
 #include "app/edit/pick.h"
 #include "app/edit/transform_drag.h"
 #include "app/view/canvas.h"
@@ -96,8 +97,10 @@ public:
 Q_SIGNALS:
   void cameraChanged();
   void regionPainted(const std::vector<Index>& faces); ///< of the model, ascending
-  void menuRequested(const QPoint& at);                ///< of what can be done there
-  void hint(const QString& text); ///< what the mouse would do here: for the status bar
+  /// What of the model is within is painted as a whole, or erased.
+  void regionOutlined(const cagewright::app::ScreenOutline& outline, bool erases);
+  void menuRequested(const QPoint& at); ///< of what can be done there
+  void hint(const QString& text);       ///< what the mouse would do here: for the status bar
 
 protected:
   void initializeGL() override;
@@ -192,6 +195,8 @@ private:
   /// The pointer says what a press would do, or what it does.
   void update_cursor();
   [[nodiscard]] std::vector<Pixel> outline() const;
+  /// Outlines are round what the cage is for, not round parts of the cage.
+  [[nodiscard]] bool outlines_region() const;
   [[nodiscard]] PickOptions pick_options() const;
   [[nodiscard]] Selection selection_of(const Pick& pick) const;
 
@@ -243,7 +248,7 @@ private:
   bool painted_before_ = false;
   bool shows_beside_ = false;
   bool beside_framed_ = false; // what is beside the model was brought into view
-  bool dressed_ = false; // what the canvas has is the model's dress
+  bool dressed_ = false;       // what the canvas has is the model's dress
   bool with_texts_ = true;
   bool coarse_while_moving_ = true;
   QTimer rest_;    // runs while something moves, and a moment longer

@@ -277,7 +277,7 @@ bool Viewport::edit_key(QKeyEvent* event) {
     extrude();
     return true;
   case Qt::Key_B:
-    box_armed_ = document_.has_cage();
+    box_armed_ = document_.has_cage() || outlines_region();
     update();
     return true;
   case Qt::Key_G:

@@ -59,8 +59,16 @@ std::vector<Pixel> Viewport::outline() const {
   return gesture_ == Gesture::box ? rectangle(press_.at, cursor_) : lasso_;
 }
 
+bool Viewport::outlines_region() const {
+  return document_.tools().tool == Tool::region && document_.has_model() &&
+         document_.mode() == Mode::refine;
+}
+
 void Viewport::finish_outline(Qt::KeyboardModifiers modifiers) {
-  if (document_.has_cage()) {
+  if (outlines_region()) {
+    Q_EMIT regionOutlined({camera_, outline(), document_.tools().see_through},
+                          modifiers.testFlag(Qt::ShiftModifier));
+  } else if (document_.has_cage()) {
     const Selection& now = document_.selection();
     const Selection found = picker().within(camera_, outline(), now.mode, pick_options());
     const bool shift = modifiers.testFlag(Qt::ShiftModifier);
@@ -132,8 +140,8 @@ void Viewport::hover(const Pixel& cursor) {
     Q_EMIT hint(tr("Paint: the cage becomes finer here \u00b7 Ctrl: coarser \u00b7 Shift: erase "
                    "\u00b7 Ctrl+wheel: size of the brush"));
   } else if (document_.tools().tool == Tool::region && document_.has_model()) {
-    Q_EMIT hint(tr("Paint what the cage is for \u00b7 Shift: erase \u00b7 Ctrl+wheel: size of the "
-                   "brush"));
+    Q_EMIT hint(tr("Paint what the cage is for \u00b7 Shift: erase \u00b7 Ctrl: lasso, B: box "
+                   "\u00b7 Ctrl+wheel: size of the brush"));
   } else if (document_.tools().tool == Tool::pull && document_.mode() == Mode::deform) {
     Q_EMIT hint(tr("Drag the model \u00b7 click: a pin that holds it \u00b7 Ctrl+click: away with "
                    "the pin"));
@@ -183,6 +191,12 @@ void Viewport::mousePressEvent(QMouseEvent* event) {
   }
   if (event->button() == Qt::LeftButton && !box_armed_ && gesture_ == Gesture::none &&
       (pull_press(modifiers) || paint_press(modifiers))) {
+    return;
+  }
+  if (event->button() == Qt::LeftButton && outlines_region()) {
+    gesture_ = box_armed_ ? Gesture::box : Gesture::lasso;
+    press_ = {cursor_, modifiers, {}};
+    lasso_ = {cursor_};
     return;
   }
   if (event->button() != Qt::LeftButton || !document_.has_cage()) {

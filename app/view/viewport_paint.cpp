@@ -50,6 +50,9 @@ bool Viewport::paint_press(const Qt::KeyboardModifiers& modifiers) {
                               "rest"));
     return true;
   }
+  if (outlines_region() && modifiers.testFlag(Qt::ControlModifier)) {
+    return false; // a lasso
+  }
   editor_.begin_step(); // the stroke may come from beside the model
   stroke_.emplace();
   stroke_->chooses = document_.tools().tool == Tool::region;

@@ -267,6 +267,82 @@ TEST_F(SessionTest, MakesTheCageForAGroupAndLeavesTheRestWhereItIs) {
   EXPECT_LT(greatest_distance(shown_model(), shown), 1e-5);
 }
 
+/// The torus in a scan: dust far away, and a vertex that no face uses.
+PolygonMesh dusty() {
+  PolygonMesh mesh(make_torus(0.25, 40, 20));
+  const auto first = static_cast<Index>(mesh.positions.size());
+  for (const Vec3& p : {Vec3(40, 0, 0), Vec3(40.01, 0, 0), Vec3(40, 0.01, 0), Vec3(0, 0, -60)}) {
+    mesh.positions.push_back(p);
+  }
+  mesh.add_face({first, first + 1, first + 2});
+  return mesh;
+}
+
+TEST_F(SessionTest, KnowsThatACageIsForAllButSpecks) {
+  const PolygonMesh scan = dusty();
+  ASSERT_TRUE(write_mesh(scan, path("scan.obj")));
+  session_.open(path("scan.obj"));
+  wait();
+  const Document& document = session_.document();
+  GenerateSettings settings;
+  settings.options.vertices = 40;
+  settings.options.rounds = 0; // quick
+  settings.options.ignore_specks = true;
+  session_.set_settings(settings);
+  for (int times = 0; times < 2; ++times) { // the second time there is no speck any more
+    session_.generate();
+    wait();
+    ASSERT_TRUE(document.has_cage()) << failures_.front();
+    ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+    EXPECT_TRUE(document.check().report->valid()) << "it is judged by what it is for";
+    ASSERT_TRUE(document.state().region);
+    EXPECT_EQ(document.state().region->faces.size(), scan.face_count() - 1);
+  }
+  session_.bind(Session::Doubts::tell);
+  wait();
+  EXPECT_EQ(document.mode(), Mode::deform) << "no doubts";
+  session_.refine();
+  QUndoStack& stack = session_.editor().undo_stack();
+  while (stack.canUndo()) {
+    stack.undo();
+  }
+  EXPECT_FALSE(document.state().region);
+  // The same for a cage from elsewhere.
+  session_.load_cage(path("cage.obj"));
+  wait();
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_FALSE(document.check().report->valid());
+  session_.choose_all_but_specks();
+  wait();
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_TRUE(document.check().report->valid());
+  ASSERT_TRUE(session_.save_project(path("scan.cagewright")));
+  session_.open(path("model.obj"));
+  wait();
+  session_.choose_all_but_specks();
+  wait();
+  EXPECT_FALSE(document.state().region) << "it has none";
+  session_.open(path("scan.cagewright"));
+  wait();
+  ASSERT_TRUE(document.state().region);
+  EXPECT_EQ(document.state().region->faces.size(), scan.face_count() - 1);
+}
+
+TEST_F(SessionTest, LeavesOutVerticesThatNoFaceUses) {
+  PolygonMesh mesh(make_torus(0.25, 40, 20));
+  mesh.positions.emplace_back(0, 0, -60);
+  ASSERT_TRUE(write_mesh(mesh, path("loose.obj")));
+  session_.open(path("loose.obj"), path("cage.obj"));
+  wait();
+  session_.choose_all_but_specks();
+  wait();
+  const Document& document = session_.document();
+  ASSERT_TRUE(document.state().region);
+  EXPECT_EQ(document.state().region->vertices.size(), mesh.positions.size() - 1);
+  ASSERT_TRUE(wait_until([this] { return !session_.checker().busy(); }));
+  EXPECT_TRUE(document.check().report->valid());
+}
+
 TEST_F(SessionTest, TakesBackWhatTheCageIsFor) {
   ASSERT_TRUE(write_mesh(two_groups(), path("two.obj")));
   session_.open(path("two.obj"), path("cage.obj"));
@@ -572,6 +648,32 @@ TEST_F(SessionTest, MovesSeveralModelsUnderOneCage) {
     }
   }
   EXPECT_EQ(at, together);
+  EXPECT_EQ(message_, "Wrote out-model.obj and out-eye.obj");
+  // The file that is chosen is none of those that are written: nobody else has asked about them.
+  std::vector<std::string> asked;
+  bool goes_on = false;
+  session_.set_asker([&](const Question& question) {
+    asked.push_back(question.text.toStdString());
+    return goes_on;
+  });
+  fs::remove(path("out-eye.obj"));
+  message_.clear();
+  session_.export_model(path("out.obj"));
+  wait();
+  ASSERT_EQ(asked, std::vector<std::string>{"out-model.obj is there already."});
+  EXPECT_FALSE(fs::exists(path("out-eye.obj"))) << "nothing is written";
+  EXPECT_EQ(message_, "");
+  goes_on = true;
+  session_.export_model(path("out.obj"));
+  wait();
+  EXPECT_TRUE(fs::exists(path("out-eye.obj")));
+  session_.export_model(path("out.obj"));
+  wait();
+  EXPECT_EQ(asked.back(), "2 of the files are there already, out-model.obj to out-eye.obj.");
+  session_.export_model(path("other.obj"));
+  wait();
+  EXPECT_EQ(asked.size(), 3U);
+  session_.set_asker({});
   // And they come back together.
   ASSERT_TRUE(session_.save_project(path("both.cagewright")));
   session_.open(path("model.obj"));
@@ -582,6 +684,35 @@ TEST_F(SessionTest, MovesSeveralModelsUnderOneCage) {
   ASSERT_TRUE(failures_.empty()) << failures_.front();
   EXPECT_EQ(session_.document().model()->mesh.positions.size(), together);
   EXPECT_EQ(session_.document().mode(), Mode::deform);
+}
+
+TEST_F(SessionTest, ComesBackToTheFrameItStoodAt) {
+  open_and_bind();
+  Document& document = session_.document();
+  session_.editor().set_keyframe(1);
+  document.set_time(29);
+  drag(0, Vec3(0.3, 0, 0));
+  session_.editor().set_keyframe(29);
+  document.set_time(40);
+  drag(0, Vec3(0, 0.3, 0)); // and no keyframe yet
+  const std::vector<Vec3> edited = cage();
+  for (const bool shows_frame : {false, true}) {
+    if (shows_frame) {
+      document.set_time(20.5);
+    }
+    const std::vector<Vec3> shown(document.shown_cage_positions().begin(),
+                                  document.shown_cage_positions().end());
+    const double frame = document.frame();
+    ASSERT_TRUE(session_.save_project(path("walk.cagewright")));
+    session_.open(path("model.obj"));
+    wait();
+    session_.open(path("walk.cagewright"));
+    wait();
+    EXPECT_EQ(document.frame(), frame) << "a keyframe would go there";
+    EXPECT_EQ(document.time().has_value(), shows_frame);
+    EXPECT_EQ(greatest_distance(document.shown_cage_positions(), shown), 0);
+    EXPECT_EQ(greatest_distance(cage(), edited), 0) << "the edited pose is what it was";
+  }
 }
 
 TEST_F(SessionTest, ExportsTheTimeLineAsOneFileThatMoves) {

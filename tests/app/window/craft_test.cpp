@@ -376,6 +376,90 @@ TEST_F(Craft, PaintsWhereTheNextCageIsFiner) {
   EXPECT_GT(finer, share_near());
 }
 
+TEST_F(Craft, DrawsRoundWhatTheCageIsFor) {
+  open_model();
+  take_tool(Tool::region);
+  const auto region = [this] { return document().state().region; };
+  const auto lasso = [this](std::vector<QPoint> corners, Qt::KeyboardModifiers modifiers) {
+    test::move_mouse(view(), corners[0]);
+    QTest::mousePress(&view(), Qt::LeftButton, modifiers, corners[0]);
+    for (const QPoint& corner : corners) {
+      test::move_mouse(view(), corner, Qt::LeftButton, modifiers);
+    }
+    QTest::mouseRelease(&view(), Qt::LeftButton, modifiers, corners.back());
+    wait_for_job();
+  };
+  const QPoint middle(view().width() / 2, view().height() / 2);
+  const std::vector<QPoint> right = {{middle.x(), 4},
+                                     {view().width() - 4, 4},
+                                     {view().width() - 4, view().height() - 4},
+                                     {middle.x(), view().height() - 4}};
+  lasso(right, Qt::ControlModifier);
+  ASSERT_TRUE(region());
+  const std::vector<Index> seen = region()->faces;
+  const PolygonMesh& mesh = document().model()->mesh;
+  EXPECT_GT(seen.size(), mesh.face_count() / 10);
+  EXPECT_LT(seen.size(), mesh.face_count() / 2) << "neither the left, nor the back";
+  for (const Index f : seen) {
+    EXPECT_GT(at(mesh.positions[mesh.face(f)[0]]).x(), middle.x() - 40);
+  }
+  keep("region-lasso");
+  // The back as well, by a box; it adds.
+  trigger("see_through");
+  press_at_focus(Qt::Key_B);
+  drag(right[0], right[2]);
+  wait_for_job();
+  const std::vector<Index> through = region()->faces;
+  EXPECT_GT(through.size(), seen.size() * 3 / 2);
+  EXPECT_TRUE(std::ranges::includes(through, seen));
+  // Shift takes away, and one that is begun is given up by Esc.
+  lasso({right[0], right[1], {right[1].x(), middle.y()}, {middle.x(), middle.y()}},
+        Qt::ControlModifier | Qt::ShiftModifier);
+  EXPECT_LT(region()->faces.size(), through.size());
+  press_at_focus(Qt::Key_Z, Qt::ControlModifier);
+  EXPECT_EQ(region()->faces, through) << "each is a step";
+  QTest::mousePress(&view(), Qt::LeftButton, Qt::ControlModifier, right[0]);
+  test::move_mouse(view(), right[2], Qt::LeftButton, Qt::ControlModifier);
+  press_at_focus(Qt::Key_Escape);
+  QTest::mouseRelease(&view(), Qt::LeftButton, {}, right[2]);
+  wait_for_job();
+  EXPECT_EQ(region()->faces, through);
+  lasso({{2, 2}, {12, 2}, {12, 12}}, Qt::ControlModifier);
+  EXPECT_EQ(region()->faces, through) << "there is nothing";
+  trigger("see_through");
+}
+
+TEST_F(Craft, SaysWhatTheCageIsForInTheRoomThereIs) {
+  PolygonMesh named = model();
+  named.group_names = {"the left half of a torus that has quite a long name", "right"};
+  for (Index f = 0; f < named.face_count(); ++f) {
+    named.face_groups.push_back(f < named.face_count() / 2 ? 0 : 1);
+  }
+  ASSERT_TRUE(write_mesh(named, path("named.obj").toStdString()));
+  session().open(path("named.obj").toStdString());
+  wait_for_job();
+  auto* button = find<QToolButton>("region");
+  EXPECT_EQ(button->text(), "the whole model") << "as wide as the panel is at first";
+  const std::vector<NamedPart> parts = named_parts(*document().model());
+  session().choose_region(parts[0].name, parts[0].faces);
+  wait_for_job();
+  constexpr int arrow = 14;
+  const auto fits = [&] {
+    return button->fontMetrics().horizontalAdvance(button->text()) + arrow < button->width();
+  };
+  EXPECT_TRUE(fits()) << button->text().toStdString();
+  EXPECT_TRUE(button->text().endsWith(QChar(0x2026)));
+  window->resizeDocks({find<QDockWidget>("dock_generate")}, {420}, Qt::Horizontal);
+  settle();
+  const QString wide = button->text();
+  EXPECT_TRUE(fits());
+  window->resizeDocks({find<QDockWidget>("dock_generate")}, {220}, Qt::Horizontal);
+  settle();
+  EXPECT_TRUE(fits());
+  EXPECT_LT(button->text().size(), wide.size());
+  keep("region-button");
+}
+
 /// How far apart two pictures of a window are, in levels of 0 to 255, in the mean.
 double mean_difference(const QImage& a, const QImage& b) {
   EXPECT_EQ(a.size(), b.size());
