@@ -10,6 +10,21 @@ namespace {
 // Where two points nearly touch, the direction between them means nothing.
 constexpr double touching = 0.01; // of the distance to keep
 
+void add_tips(const Objective& objective, const Corners& t, FaceTerms& terms) {
+  if (!(objective.tip_weight() > 0)) {
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const SurfaceTree::Nearest near = objective.nearest(t[k]);
+    const double beyond = objective.beyond_near(near.distance);
+    if (beyond > 0) {
+      const Vec3 u = (t[k] - near.point) / near.distance;
+      terms.gradient[k] += 2 * objective.tip_weight() * beyond * u;
+      terms.hessian[k][k] += 2 * objective.tip_weight() * u * u.transpose();
+    }
+  }
+}
+
 } // namespace
 
 FaceTerms volume_and_gap(const Objective& objective, const Corners& t, const Vec3& origin) {
@@ -49,6 +64,7 @@ FaceTerms volume_and_gap(const Objective& objective, const Corners& t, const Vec
     const Vec3 area_slope = n.cross(c - b) / 2;
     terms.gradient[k] += (b - origin).cross(c - origin) / 6 + mean * area_slope;
   }
+  add_tips(objective, t, terms);
   return terms;
 }
 

@@ -27,7 +27,7 @@ struct FaceTerms {
 };
 
 /// The face's part of the objective but for its shape: the volume of the tetrahedron over it from
-/// `origin`, and the integral of the gap, by six nearest points.
+/// `origin`, the integral of the gap, by six nearest points, and what its corners on tips pay.
 FaceTerms volume_and_gap(const Objective& objective, const Corners& t, const Vec3& origin);
 
 /// Half spaces, linear in the corners of triangles, that keep these clear of the model while no

@@ -194,57 +194,12 @@ private:
       }
       share *= pays ? 1 : 2;
     }
-    if (!over_budget()) {
-      blunt_tips(best, progress.part(0.8, 0.9));
+    if (!over_budget() && blunt_tips(best, progress.part(0.8, 0.9))) {
+      objective_.limit_gap(farthest()); // or they grow again
     }
-    return settle_shapes(progress.part(0.9, 1));
-  }
-
-  // The objective hardly feels a thin spike, but users see it first. Tips that stand off the model
-  // far more than the rest of the cage are drawn in with all round them; or split, and vertices
-  // elsewhere are given for that, as long as it costs little.
-  void blunt_tips(double value, const Progress& progress) {
-    constexpr int attempts = 8;
-    constexpr int patience = 2;
-    int in_vain = 0;
-    std::vector<Index> tried;
-    for (int i = 0; i < attempts && in_vain < patience && !progress.cancelled(); ++i) {
-      const std::optional<Tip> tip = farthest_tip(tried);
-      if (!tip) {
-        break;
-      }
-      tried.push_back(tip->vertex);
-      const WorkingCage kept = cage_;
-      double after = value;
-      constexpr double nearer = 0.9;
-      const std::size_t before = cage_.mesh.vertex_count();
-      bool better = shave_tip(cage_, guard_, objective_, tip->vertex, most_valence_);
-      if (better) {
-        // More than were saved: of a few the most promising are often not the ones that can be
-        // made.
-        const std::size_t more = std::max(fewest, budget_ / 8);
-        split_edges(cage_, guard_, objective_, before - cage_.mesh.vertex_count() + more,
-                    most_valence_);
-      } else {
-        better = split_tip(cage_, guard_, objective_, tip->vertex, most_valence_) &&
-                 distance_of(tip->vertex) < nearer * tip->distance;
-      }
-      if (better) {
-        constexpr double shorter = 0.75;
-        objective_.limit_gap(std::max(shorter * tip->distance, farthest()));
-        reduce(Placement::clear_of_model, budget_, progress);
-        after = settle(2, progress);
-        const bool much_nearer = farthest() < nearer * tip->distance;
-        better = !over_budget() && after < value + (much_nearer ? tip->worth : 0);
-      }
-      if (better) {
-        value = after;
-      } else {
-        cage_ = kept;
-        ++in_vain;
-      }
-    }
+    const double value = settle_shapes(progress.part(0.9, 1));
     objective_.limit_gap(std::numeric_limits<double>::infinity());
+    return value;
   }
 
   struct Tip {
@@ -253,21 +208,101 @@ private:
     double worth = 0;    // what the objective may grow by if it gets much nearer
   };
 
+  // The objective hardly feels a thin spike, but users see it first. Tips that stand off the model
+  // far more than the rest of the cage are drawn in with all round them; or split, and vertices
+  // elsewhere are given for that; or made to feel it, as long as that costs little.
+  // \returns whether any was
+  bool blunt_tips(double value, const Progress& progress) {
+    constexpr int attempts = 16;
+    constexpr int patience = 2;
+    int in_vain = 0;
+    bool is_any = false;
+    std::vector<Index> tried;
+    for (int i = 0; i < attempts && in_vain < patience && !progress.cancelled(); ++i) {
+      const std::optional<Tip> tip = farthest_tip(tried);
+      if (!tip) {
+        break;
+      }
+      tried.push_back(tip->vertex);
+      const bool is_fault = tip->distance > shape_limits::far_tip * objective_.diagonal();
+      const bool better = pays(*tip, value, progress, [&] { return shave_or_split(*tip); }) ||
+                          (is_fault && pays(*tip, value, progress, [&] { return draw_in(*tip); }));
+      in_vain += better || is_fault ? 0 : 1;
+      is_any = is_any || better;
+    }
+    objective_.limit_gap(std::numeric_limits<double>::infinity());
+    return is_any;
+  }
+
+  // Makes a change for the sake of a tip and takes it back unless the tip gets nearer at little
+  // cost, which is added to the value. \returns whether it did
+  template <class Change>
+  bool pays(const Tip& tip, double& value, const Progress& progress, const Change& change) {
+    const WorkingCage kept = cage_;
+    const double before = standing_off();
+    if (change()) {
+      constexpr double shorter = 0.75;
+      const double fault = shape_limits::far_tip * objective_.diagonal();
+      objective_.limit_gap(tip.distance > fault ? std::min(shorter * tip.distance, fault)
+                                                : shorter * tip.distance);
+      reduce(Placement::clear_of_model, budget_, progress);
+      const double after = settle(2, progress);
+      constexpr double gain = 1 - nearer_tip * nearer_tip;
+      const bool much_nearer = standing_off() < before - gain * maths::square(tip.distance);
+      if (!over_budget() && after < value + (much_nearer ? tip.worth : 0)) {
+        value = after;
+        return true;
+      }
+    }
+    cage_ = kept;
+    return false;
+  }
+
+  bool shave_or_split(const Tip& tip) {
+    const std::size_t before = cage_.mesh.vertex_count();
+    if (shave_tip(cage_, guard_, objective_, tip.vertex, most_valence_)) {
+      // More than were saved: of a few the most promising are often not the ones that can be made.
+      const std::size_t more = std::max(fewest, budget_ / 8);
+      split_edges(cage_, guard_, objective_, before - cage_.mesh.vertex_count() + more,
+                  most_valence_);
+      return true;
+    }
+    return split_tip(cage_, guard_, objective_, tip.vertex, most_valence_) &&
+           distance_of(tip.vertex) < nearer_tip * tip.distance;
+  }
+
+  // What is round the tip is made wider and shorter.
+  bool draw_in(const Tip& tip) {
+    std::vector<Index> movable = cage_.mesh.neighbors(tip.vertex);
+    movable.push_back(tip.vertex);
+    for (const double weight : {0.3, 3.0, 30.0}) {
+      objective_.weigh_tips(weight);
+      relax(cage_, guard_, objective_, {.steps = 6, .movable = movable});
+      if (distance_of(tip.vertex) <= shape_limits::far_tip * objective_.diagonal()) {
+        break;
+      }
+    }
+    objective_.weigh_tips(0);
+    return distance_of(tip.vertex) < nearer_tip * tip.distance;
+  }
+
   // The vertex farthest from the model of those not tried, if it is far.
   [[nodiscard]] std::optional<Tip> farthest_tip(const std::vector<Index>& tried) const {
     constexpr double far = 5;      // times the mean
     constexpr double least = 0.02; // of the diagonal: less is hardly seen
     constexpr double worth = 0.02; // of what there is between cage and model
+    constexpr double worth_of_a_fault = 0.08;
     const CageMesh& mesh = cage_.mesh;
     double area = 0;
     double sum = 0;
+    double gaps = 0;
     Tip tip;
     for (Index f = 0; f < mesh.face_end(); ++f) {
       if (mesh.has_face(f)) {
         const Corners t = corners_of(mesh, f);
         area += triangle_area(t);
         sum += triangle_area(t) * objective_.nearest((t[0] + t[1] + t[2]) / 3).distance;
-        tip.worth += worth * objective_.face(t);
+        gaps += objective_.face(t);
       }
     }
     for (Index v = 0; v < mesh.vertex_end(); ++v) {
@@ -279,6 +314,8 @@ private:
         }
       }
     }
+    const bool is_fault = tip.distance > shape_limits::far_tip * objective_.diagonal();
+    tip.worth = (is_fault ? worth_of_a_fault : worth) * gaps;
     const bool is_far =
         tip.distance > least * objective_.diagonal() && tip.distance * area > far * sum;
     return is_far ? std::optional(tip) : std::nullopt;
@@ -287,12 +324,29 @@ private:
   // The greatest distance of a vertex from the model.
   [[nodiscard]] double farthest() const {
     double most = 0;
-    for (Index v = 0; v < cage_.mesh.vertex_end(); ++v) {
-      if (cage_.mesh.has_vertex(v)) {
-        most = std::max(most, distance_of(v));
-      }
+    for (const double d : distances()) {
+      most = std::max(most, d);
     }
     return most;
+  }
+
+  // How far the vertices are from the model: the sum of the squares.
+  [[nodiscard]] double standing_off() const {
+    double sum = 0;
+    for (const double d : distances()) {
+      sum += maths::square(d);
+    }
+    return sum;
+  }
+
+  [[nodiscard]] std::vector<double> distances() const {
+    std::vector<double> all;
+    for (Index v = 0; v < cage_.mesh.vertex_end(); ++v) {
+      if (cage_.mesh.has_vertex(v)) {
+        all.push_back(distance_of(v));
+      }
+    }
+    return all;
   }
 
   [[nodiscard]] double distance_of(Index v) const {
@@ -442,7 +496,8 @@ private:
     return relax_steps(steps - steps / 2, progress.part(0.5, 1));
   }
 
-  static constexpr std::size_t fewest = 4; // vertices of a closed surface
+  static constexpr std::size_t fewest = 4;  // vertices of a closed surface
+  static constexpr double nearer_tip = 0.9; // times as far: worth the while
 
   ImproveOptions options_;
   const ModelSurface& surface_;

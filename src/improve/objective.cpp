@@ -78,7 +78,17 @@ double Objective::face(const Corners& t) const {
     sum += node.weight * gap(nearest(p));
   }
   const double x = shape_defect(t);
-  return triangle_area(t) * sum + shape_weight() * x * x + webbing(t);
+  return triangle_area(t) * sum + shape_weight() * x * x + webbing(t) + tips(t);
+}
+
+double Objective::tips(const Corners& t) const {
+  double sum = 0;
+  if (weights_.tip > 0) {
+    for (const Vec3& p : t) {
+      sum += tip_weight() * maths::square(beyond_near(nearest(p).distance));
+    }
+  }
+  return sum;
 }
 
 double Objective::sampled_gap(const Corners& t) const {

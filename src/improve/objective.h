@@ -4,10 +4,12 @@
 
 #include "core/maths.h"
 #include "improve/guard.h"
+#include "mesh/shape_limits.h"
 #include <cagewright/core/progress.h>
 #include <cagewright/mesh/measures.h>
 #include <cagewright/validate/webbing.h>
 
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <vector>
@@ -19,7 +21,8 @@ namespace cagewright {
 /// diagonal), plus shape * D * area * x^2 for each face, x = (a^2 + b^2 + c^2) / (4 sqrt(3) A) - 1
 /// for a face of sides a, b, c and area A: zero when equilateral, about 6 when 2 r / R = 0.15,
 /// large for needles. Plus webbing * the volume of the space between limbs that is inside the cage,
-/// counted in points: a web between two legs has hardly any volume.
+/// counted in points: a web between two legs has hardly any volume. Plus tip * D * e^2 for each
+/// corner of a face that is farther from the model than `near_tip`, by e.
 ///
 /// Where the model has an emphasis w, at the nearest of its triangles, a gap counts w times: the
 /// integrand there is (2 w - 1) d + w square d^2 / D, the volume having been counted once.
@@ -32,6 +35,8 @@ struct ObjectiveWeights {
   /// What is between limbs, or nothing; lives as long as the objective.
   const SpaceBetween* between = nullptr;
   double webbing = 30; ///< how many times its volume counts
+  double tip = 0;      ///< the integrals above hardly feel a spike, however long
+  double near_tip = 0.9 * shape_limits::far_tip; ///< in diagonals
   /// No step may leave a face of the cage farther than this from the model at any of a few samples,
   /// unless it brings it much nearer than it was: in the model's units.
   double most_gap = std::numeric_limits<double>::infinity();
@@ -71,6 +76,13 @@ public:
     return 2 * emphasis(near) * weights_.square / diagonal();
   }
 
+  /// What multiplies e^2.
+  [[nodiscard]] double tip_weight() const { return weights_.tip * diagonal(); }
+  /// e: how much farther than is near a point is from the model.
+  [[nodiscard]] double beyond_near(double distance) const {
+    return std::max(0.0, distance - weights_.near_tip * diagonal());
+  }
+
   /// What multiplies x^2.
   [[nodiscard]] double shape_weight() const {
     return weights_.shape * diagonal() * weights_.typical_area;
@@ -85,6 +97,9 @@ public:
   /// A face's own part: the integral of the gap, by three nearest points, the shape, and its share
   /// of the webbing, which adds up over a closed surface.
   [[nodiscard]] double face(const Corners& t) const;
+
+  /// What it pays for corners on tips.
+  [[nodiscard]] double tips(const Corners& t) const;
 
   /// The greatest distance to the model at fifteen points of the triangle, its corners among them.
   [[nodiscard]] double sampled_gap(const Corners& t) const;
@@ -106,6 +121,7 @@ public:
   void allow_webs() { weights_.between = nullptr; }
   void limit_gap(double most_gap) { weights_.most_gap = most_gap; }
   void weigh_shape(double shape) { weights_.shape = shape; }
+  void weigh_tips(double tip) { weights_.tip = tip; }
 
   /// The change of the whole objective by a patch, given the parts of the present faces.
   [[nodiscard]] double change(const CageMesh& cage, std::span<const double> face_values,

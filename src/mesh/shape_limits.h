@@ -17,6 +17,9 @@ inline constexpr double few_thin = 0.05;
 /// The share of quads among the faces that cages of quads aim at.
 inline constexpr double enough_quads = 0.7;
 
+/// A vertex of a cage that is farther from the model, in diagonals of the model's box, is a fault.
+inline constexpr double far_tip = 0.05;
+
 // What makes faces rounder aims a little beyond: measured on what is written to a file they are on
 // the right side still.
 
