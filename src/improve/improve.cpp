@@ -214,7 +214,7 @@ private:
   // \returns whether any was
   bool blunt_tips(double value, const Progress& progress) {
     constexpr int attempts = 16;
-    constexpr int patience = 2;
+    constexpr int patience = 4;
     int in_vain = 0;
     bool is_any = false;
     std::vector<Index> tried;
@@ -227,7 +227,7 @@ private:
       const bool is_fault = tip->distance > shape_limits::far_tip * objective_.diagonal();
       const bool better = pays(*tip, value, progress, [&] { return shave_or_split(*tip); }) ||
                           (is_fault && pays(*tip, value, progress, [&] { return draw_in(*tip); }));
-      in_vain += better || is_fault ? 0 : 1;
+      in_vain += better ? 0 : is_fault ? 1 : 2;
       is_any = is_any || better;
     }
     objective_.limit_gap(std::numeric_limits<double>::infinity());
