@@ -202,7 +202,8 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
 /// filled to keep to the budget, finer voxels would only bring them back.
 bool may_finer_voxels_help(const Surface& made) {
   return made.cage.method == Method::envelope && is_within_budget(made.cage) &&
-         made.webbing >= webbed && made.cage.genus >= made.known;
+         made.cage.genus >= made.known &&
+         (made.webbing >= webbed || made.cage.genus > made.known);
 }
 
 /// Makes one surface after another, and keeps the best.
