@@ -57,7 +57,7 @@ Interruption::Interruption(const StopFlag& stop, std::function<void()> overdue)
     semaphore_at_hand = &asked_;
     thread_ = std::thread([this] {
       wait(asked_);
-      if (stop_.stop_requested() && !wait(asked_, moment)) {
+      while (stop_.stop_requested() && !wait(asked_, moment)) {
         overdue_();
       }
     });

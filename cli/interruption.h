@@ -13,7 +13,8 @@ namespace cagewright::cli {
 /// While it lives, SIGINT, SIGTERM and SIGHUP ask for a stop by `stop`. What is under way and asks
 /// ends by itself. Not everything can ask: a file being read, a picture being drawn, a chain of
 /// memory being given back. Where the object still lives a moment after the signal, `overdue` is
-/// called on a thread of its own. A second signal ends the program at once. There is one a process.
+/// called on a thread of its own, and again. A second signal ends the program at once. There is one
+/// a process.
 class Interruption {
 public:
   /// \param overdue  none: what is under way has all the time it takes

@@ -164,8 +164,12 @@ void tell_failure_in_json(const Session& session, int exit_code) {
   }
 }
 
-/// Ends the program in the middle of whatever it is doing. Files that are not complete go.
-[[noreturn]] void end_at_once(const Session& session) {
+/// Ends the program in the middle of whatever it is doing. Files that are not complete go. Once
+/// files are written it is likely to be about to end by itself, and gets a little longer for that.
+void end_at_once(Session& session) {
+  if (has_written_files() && !session.is_overdue.exchange(true)) {
+    return;
+  }
   const int exit_code = fail(Error::cancelled());
   tell_failure_in_json(session, exit_code);
   abandon_part_files();

@@ -178,7 +178,7 @@ Deadline::Deadline(double seconds, std::function<void()> expired, std::function<
           return;
         }
         expired();
-        if (!wait(std::chrono::duration<double>(grace))) {
+        while (!wait(std::chrono::duration<double>(grace))) {
           overdue();
         }
       });

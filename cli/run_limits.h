@@ -34,7 +34,7 @@ std::string seconds_as_text(double seconds);
 void limit_memory(std::uint64_t bytes);
 
 /// Calls `expired` once the time is over, and `overdue` when this object still lives some seconds
-/// later. Without a limit it does nothing.
+/// later, and again. Without a limit it does nothing.
 class Deadline {
 public:
   Deadline(double seconds, std::function<void()> expired, std::function<void()> overdue);

@@ -1,5 +1,7 @@
 #include "session.h"
 
+#include "io/atomic_file.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -19,9 +21,10 @@ Error as_told(const Error& error) {
     return error;
   }
   return {ErrorCode::cancelled,
-          fmt::format("the time limit of {} is reached, nothing was written; allow more with "
+          fmt::format("the time limit of {} is reached, {} was written; allow more with "
                       "--time-limit, or ask for less (fewer vertices, a lower resolution)",
-                      seconds_as_text(session_at_hand->limits.seconds))};
+                      seconds_as_text(session_at_hand->limits.seconds),
+                      has_written_files() ? "not all" : "nothing")};
 }
 
 } // namespace

@@ -35,6 +35,7 @@ struct Session {
   bool quiet = false; ///< no progress and no summary on the terminal
   Limits limits;
   std::atomic<bool> out_of_time = false;      ///< `stop` was asked for by the time limit
+  std::atomic<bool> is_overdue = false;       ///< it should have stopped, and was given longer
   std::vector<std::string> words;             ///< the command line, for the files that errors name
   std::string json;                           ///< the file of --json; empty: not asked for
   mutable std::optional<Error> first_failure; ///< as fail() was told
@@ -71,8 +72,8 @@ void warn(std::string_view message);
   X(generate)                                                                                      \
   X(batch)                                                                                         \
   X(check)                                                                                         \
-  X(compare) X(info) X(bind) X(deform) X(coordinates) X(convert) X(weld)                           \
-      CAGEWRIGHT_RENDER_COMMAND(X) X(view)
+  X(compare)                                                                                       \
+  X(info) X(bind) X(deform) X(coordinates) X(convert) X(weld) CAGEWRIGHT_RENDER_COMMAND(X) X(view)
 #define CAGEWRIGHT_DECLARE(name) void add_##name(CLI::App& app, Session& session);
 CAGEWRIGHT_COMMANDS(CAGEWRIGHT_DECLARE)
 #undef CAGEWRIGHT_DECLARE

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <mutex>
 #include <set>
@@ -36,6 +37,7 @@ int write_all(int file, std::string_view bytes) {
 // Names of files that are being written: for a program that ends in the middle of it.
 std::mutex named_parts_mutex;
 std::set<fs::path> named_parts;
+std::atomic<bool> is_any_written = false;
 
 // A folder as open() takes it.
 fs::path folder_of(const fs::path& path) {
@@ -274,6 +276,7 @@ Status PartFile::commit() {
     return cannot_write(path_, error); // the destructor removes the part
   }
   part_.clear();
+  is_any_written = true;
   return success();
 }
 
@@ -314,6 +317,10 @@ void abandon_part_files() {
   for (const fs::path& part : named_parts) {
     ::unlink(part.c_str());
   }
+}
+
+bool has_written_files() {
+  return is_any_written;
 }
 
 Status can_write_file(const fs::path& path) {

@@ -76,6 +76,10 @@ Status write_files_atomically(std::span<const NamedBytes> files);
 /// name: for a program that is about to end, whatever its threads are doing.
 void abandon_part_files();
 
+/// Whether any file has got its name since the program began: what is told of a stop must not say
+/// that nothing was written.
+bool has_written_files();
+
 /// Why nothing can be written there, and what helps. \param error  an errno
 Error cannot_write(const std::filesystem::path& path, int error);
 
