@@ -14,9 +14,9 @@ namespace {
 
 class LargeModel : public Window {
 protected:
-  /// What may pass from one answer to the next, as a share of the work of preparing the model, which
-  /// is done beside the window. The model has a fifth of a million triangles: on a machine of today
-  /// it is some 60 ms, and a tenth of a second is felt.
+  /// What may pass from one answer to the next, as a share of the work of preparing the model,
+  /// which is done beside the window. The model has a fifth of a million triangles: on a machine of
+  /// today it is some 60 ms, and a tenth of a second is felt.
   static constexpr double most_share = 0.5;
 
   void SetUp() override {
