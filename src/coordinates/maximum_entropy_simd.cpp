@@ -208,11 +208,14 @@ TileReport entropy_tile(const UsedSurface& cage, std::span<const Vec3> points,
   std::array<bool, 16> again{};
   for (std::size_t first = 0; first < 16; first += lanes) {
     LanePoints lane(surface, &all.x[first], &all.y[first], &all.z[first], scratch.data());
+    Lanes lowest(1e300); // LanePoints flags what is far nearer only
     for (std::size_t f = 0; f < surface.faces.size(); ++f) {
       const FaceTerms<Lanes> terms = lane.face(f);
+      lowest = smaller(lowest, absolute(terms.height));
       logarithm(larger(excess(surface.faces[f], terms), Lanes(1e-290))).store(logs + f * lanes);
     }
     const LaneFlags flagged = lane.flagged();
+    const LaneFlags near(lowest < Lanes(at_cage));
     gather_prior<Lanes>(surface, logs, prior);
     std::fill_n(weights, vertices * lanes, 0.0);
     Entropy<Lanes> entropy(
@@ -222,7 +225,7 @@ TileReport entropy_tile(const UsedSurface& cage, std::span<const Vec3> points,
     const LaneFlags open(entropy.solve_all());
     put_vertices(surface, weights, out.weights + first, out.stride);
     for (std::size_t i = 0; i < lanes; ++i) {
-      again[first + i] = flagged[i] || open[i];
+      again[first + i] = flagged[i] || near[i] || open[i];
     }
   }
   TileReport report;
