@@ -4,6 +4,7 @@
 #include "cage/merit.h"
 #include "cage/triangle_stage.h"
 #include "quads/grid_quads.h"
+#include "quads/quad_merit.h"
 #include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/webbing.h>
@@ -65,8 +66,10 @@ Result<QuadStage> quads_of_blocks(const QuadTask& task, const QuadOptions& quads
   return stage;
 }
 
-Merit merit(const QuadStage& stage) {
-  return {stage.report.reached, stage.made.report};
+/// Whether another try for better shapes could hardly pay.
+bool is_well_shaped(const QuadStage& stage) {
+  constexpr double nearly = 1.05; // what it is dearer by
+  return dearer_by_shapes(stage.made.report, shape_limits::enough_quads) <= nearly;
 }
 
 /// Of a half: up to its plane, seen from where what closes it there has no volume.
@@ -92,17 +95,14 @@ public:
   }
 
   [[nodiscard]] Cost cost_of(const QuadStage& stage) const {
-    const double webbing =
-        between_.share_inside(ground_.with_image(to_triangle_mesh(stage.made.cage)));
-    const QuadReport& report = stage.made.report;
-    constexpr double of_shapes = 2;
-    constexpr double for_needles = 0.1;
-    const double shapes = of_shapes * (std::max(0.0, shape_limits::enough_quads - report.share) +
-                                       std::max(0.0, report.thin - shape_limits::few_thin)) +
-                          (report.least_quality < shape_limits::needle ? for_needles : 0);
+    const double webbing = webbing_of(to_triangle_mesh(stage.made.cage));
     return {!stage.report.reached,
             (volume_of(stage.made.cage, ground_.extent()) + looseness_of(stage)) * (1 + webbing) *
-                (1 + shapes)};
+                dearer_by_shapes(stage.made.report, shape_limits::enough_quads)};
+  }
+
+  [[nodiscard]] double webbing_of(TriangleMesh cage) const {
+    return between_.share_inside(ground_.with_image(std::move(cage)));
   }
 
 private:
@@ -116,13 +116,14 @@ int triangles_for(int faces) {
   return static_cast<int>(std::lround(usual_triangles * faces));
 }
 
-/// Triangles that keep the rings: at most so many (0: as the options say), no point farther from
-/// the model than max_gap, in diagonals (0: anywhere).
-Result<Triangles> make_triangles(const QuadTask& task, int faces, double max_gap,
+/// Triangles that keep the rings: at most so many (0: as the options say) of so many vertices more
+/// than these say, no point farther from the model than max_gap, in diagonals (0: anywhere).
+Result<Triangles> make_triangles(const QuadTask& task, int faces, int more_vertices, double max_gap,
                                  const LimbRings& rings, Runs& runs, const Progress& progress) {
   runs.use_one();
   ImproveOptions budget = task.ground.budget(task.start.clearance);
   budget.faces = faces;
+  budget.vertices += more_vertices;
   budget.parts = rings.parts;
   budget.bands = rings.bands;
   if (max_gap > 0) {
@@ -133,9 +134,9 @@ Result<Triangles> make_triangles(const QuadTask& task, int faces, double max_gap
               : made.error();
 }
 
-/// Triangles, and quads made of them.
-Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
-                               const QuadOptions& quads, Runs& runs, const Progress& progress) {
+/// Triangles, with so many vertices more than there may be, and quads made of them.
+Result<QuadStage> paired_quads_of(int more_vertices, const QuadTask& task, const LimbRings& rings,
+                                  const QuadOptions& quads, Runs& runs, const Progress& progress) {
   const GenerateOptions& options = task.options;
   const auto most = static_cast<std::size_t>(options.faces);
   int triangles = triangles_for(options.faces);
@@ -147,8 +148,8 @@ Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
     const Progress part =
         may_fail ? progress.part(static_cast<double>(k) / attempts, (k + 1.0) / attempts)
                  : progress;
-    Result<Triangles> start =
-        make_triangles(task, triangles, gap, rings, runs, part.part(0, triangles_made));
+    Result<Triangles> start = make_triangles(task, triangles, more_vertices, gap, rings, runs,
+                                             part.part(0, triangles_made));
     if (!start) {
       return start.error();
     }
@@ -197,6 +198,36 @@ Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
   return std::move(*best);
 }
 
+/// Triangles, and quads made of them. Quads may have fewer vertices than there may be, as limbs end
+/// in faces where the triangles ended in a vertex: then they are made of so many more.
+Result<QuadStage> paired_quads(const QuadTask& task, const LimbRings& rings,
+                               const QuadOptions& quads, const Judge& judge, Runs& runs,
+                               const Progress& progress) {
+  constexpr double first = 0.6; // of the time
+  constexpr double few = 0.025; // of the vertices: not worth another try
+  Result<QuadStage> made = paired_quads_of(0, task, rings, quads, runs, progress.part(0, first));
+  const int most = vertex_limit(task.options);
+  if (!made || !made->report.reached || most == 0 || task.options.max_gap > 0 || !runs.are_left()) {
+    return made;
+  }
+  const int left = most - static_cast<int>(task.ground.vertices_of(made->made.cage.positions));
+  if (left <= few * most) {
+    return made;
+  }
+  Result<QuadStage> more = paired_quads_of(left, task, rings, quads, runs, progress.part(first, 1));
+  if (!more) {
+    return more.error().code == ErrorCode::cancelled ? std::move(more) : std::move(made);
+  }
+  more->report.reached = more->report.reached && is_within(more->made.cage, task);
+  if (!(judge.cost_of(*more) < judge.cost_of(*made))) {
+    return made;
+  }
+  // What they were made of is finer than they are: they are as much better as they are tighter.
+  more->report.objective =
+      made->report.objective * judge.looseness_of(*more) / judge.looseness_of(*made);
+  return more;
+}
+
 /// Whether the triangles that the quads were made of, with rings, are much worse than without.
 bool rings_cost_much(const QuadTask& task, const QuadStage& with, Runs& runs,
                      const Progress& progress) {
@@ -205,31 +236,37 @@ bool rings_cost_much(const QuadTask& task, const QuadStage& with, Runs& runs,
   }
   constexpr double much = 1.05; // rings seldom cost more than 3 %
   const Result<Triangles> without =
-      make_triangles(task, triangles_for(task.options.faces), 0, {}, runs, progress);
+      make_triangles(task, triangles_for(task.options.faces), 0, 0, {}, runs, progress);
   return without && without->improved.report.reached &&
          with.report.objective > much * without->improved.report.objective;
 }
 
+/// Whether there are rings that were asked for.
+bool are_rings_asked_for(const QuadTask& task) {
+  return task.rings.count > 0 && !task.options.joints.empty();
+}
+
 /// The same with the rings, or without if they cost much, or do not leave enough vertices, enough
-/// quads or round enough faces.
+/// quads or round enough faces. Rings that were asked for stay as long as the budget allows.
 Result<QuadStage> ringed_quads(const QuadTask& task, const QuadOptions& quads, const Judge& judge,
                                Runs& runs, const Progress& progress) {
   constexpr double usual = 0.8; // of the time
   constexpr double compared = 0.85;
   const bool has_rings = task.rings.count > 0;
   Result<QuadStage> with =
-      paired_quads(task, task.rings, quads, runs, progress.part(0, has_rings ? usual : 1));
-  if (!with || !has_rings) {
+      paired_quads(task, task.rings, quads, judge, runs, progress.part(0, has_rings ? usual : 1));
+  if (!with || !has_rings || (are_rings_asked_for(task) && with->report.reached)) {
     return with;
   }
   const bool much = rings_cost_much(task, *with, runs, progress.part(usual, compared));
   if (progress.cancelled()) {
     return Error::cancelled();
   }
-  if ((!much && with->report.reached && merit(*with).is_well_shaped()) || !runs.are_left()) {
+  if ((!much && with->report.reached && is_well_shaped(*with)) || !runs.are_left()) {
     return with;
   }
-  Result<QuadStage> without = paired_quads(task, {}, quads, runs, progress.part(compared, 1));
+  Result<QuadStage> without =
+      paired_quads(task, {}, quads, judge, runs, progress.part(compared, 1));
   const bool is_better = without && judge.cost_of(*without) < judge.cost_of(*with);
   return !without || is_better ? std::move(without) : std::move(with);
 }
@@ -244,8 +281,8 @@ Result<QuadStage> best_quads(const QuadTask& task, const QuadOptions& quads, con
   constexpr double paired = 0.5; // of the time
   Result<QuadStage> pairs =
       ringed_quads(task, quads, judge, runs, progress.part(0, try_blocks ? paired : 1));
-  if (!pairs || !try_blocks) {
-    return pairs;
+  if (!pairs || !try_blocks || (are_rings_asked_for(task) && pairs->report.reached)) {
+    return pairs; // blocks have no rings but their own
   }
   constexpr double most_loose = 1.5; // times as much as pairs: then they are dearer in any case
   const double loosest = pairs->report.reached ? most_loose * judge.looseness_of(*pairs) : 0;
@@ -274,16 +311,21 @@ Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& pro
   quads.density = budget.density;
   quads.diagonal = task.ground.diagonal();
   const Judge judge(task, quads, progress);
+  quads.webbing = [&judge](TriangleView cage) {
+    return judge.webbing_of({{cage.positions.begin(), cage.positions.end()},
+                             {cage.triangles.begin(), cage.triangles.end()}});
+  };
   Runs runs(task.ground.runs());
   constexpr double usual = 0.9; // of the time: hardly ever is there another try
   Result<QuadStage> made = best_quads(task, quads, judge, runs, progress.part(0, usual));
-  if (!made || !made->report.reached || task.options.max_gap > 0 || merit(*made).is_well_shaped() ||
+  if (!made || !made->report.reached || task.options.max_gap > 0 || is_well_shaped(*made) ||
       !runs.are_left()) {
     return made;
   }
   constexpr double dearer = 2;
   quads.shape *= dearer;
-  Result<QuadStage> again = paired_quads(task, task.rings, quads, runs, progress.part(usual, 1));
+  Result<QuadStage> again =
+      paired_quads(task, task.rings, quads, judge, runs, progress.part(usual, 1));
   const bool is_cancelled = !again && again.error().code == ErrorCode::cancelled;
   return is_cancelled || (again && judge.cost_of(*again) < judge.cost_of(*made)) ? std::move(again)
                                                                                  : std::move(made);

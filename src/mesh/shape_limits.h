@@ -14,8 +14,10 @@ inline constexpr double needle = 0.03;
 inline constexpr double thin = 0.15;
 /// The share of thin triangles that a cage may have and still count as well shaped.
 inline constexpr double few_thin = 0.05;
-/// The share of quads among the faces that cages of quads aim at.
+/// The share of quads among the faces that cages of quads have at least where that can be had, and
+/// the one that they aim at.
 inline constexpr double enough_quads = 0.7;
+inline constexpr double wanted_quads = 0.75;
 
 /// A vertex of a cage that is farther from the model, in diagonals of the model's box, is a fault.
 inline constexpr double far_tip = 0.05;

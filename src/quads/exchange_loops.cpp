@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace cagewright {
@@ -98,29 +99,47 @@ private:
     return count;
   }
 
-  [[nodiscard]] std::vector<Index> unfit_faces(const QuadCage& cage) const {
-    std::vector<Index> unfit;
-    const std::vector<Box3> boxes = face_boxes(cage, cage.positions());
-    for (Index f = 0; f < cage.face_end(); ++f) {
-      if (!wide_.may_stand(cage, boxes, f)) {
-        unfit.push_back(f);
-      }
+  /// Of the faces at these vertices, those that may not stand. The others are as they were in the
+  /// cage that this one was made of, which is valid: what crosses one of them is at such a vertex.
+  [[nodiscard]] std::vector<Index> unfit_faces(const QuadCage& cage,
+                                               std::span<const Index> vertices) const {
+    std::vector<Index> faces;
+    for (const Index v : vertices) {
+      faces.insert(faces.end(), cage.around(v).begin(), cage.around(v).end());
     }
-    return unfit;
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    const std::vector<Box3> boxes = face_boxes(cage, cage.positions());
+    std::erase_if(faces, [&](Index f) { return wide_.may_stand(cage, boxes, f); });
+    return faces;
   }
 
-  [[nodiscard]] bool is_valid(const QuadCage& cage) const {
-    return unfit_faces(cage).empty() && !loses_a_part(guard_.model(), cage, cage.positions());
+  /// Whether the cage is valid with the vertices from `first_new` on, which were put in.
+  [[nodiscard]] bool is_valid_with(const QuadCage& cage, Index first_new) const {
+    std::vector<Index> added;
+    for (Index v = first_new; v < cage.vertex_end(); ++v) {
+      added.push_back(v);
+    }
+    return unfit_faces(cage, added).empty() &&
+           !loses_a_part(guard_.model(), cage, cage.positions());
   }
 
   /// The best of the candidates after a few steps, by what each unit of budget costs or gains.
-  template <class Price>
-  std::optional<Candidate> best_of(std::vector<Candidate>& candidates, const Price& price) const {
+  ///
+  /// \param may_be  asked of one after another until there are enough
+  template <class Price, class MayBe>
+  std::optional<Candidate> best_of(std::vector<Candidate>& candidates, const Price& price,
+                                   const MayBe& may_be) const {
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.price < b.price; });
-    if (candidates.size() > static_cast<std::size_t>(options_.tries)) {
-      candidates.erase(candidates.begin() + options_.tries, candidates.end());
+    std::size_t kept = 0;
+    for (std::size_t i = 0;
+         i < candidates.size() && kept < static_cast<std::size_t>(options_.tries); ++i) {
+      if (may_be(candidates[i].cage)) {
+        std::swap(candidates[kept++], candidates[i]);
+      }
     }
+    candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(kept), candidates.end());
     parallel_for(0, candidates.size(), 1, progress_, [&](std::size_t i) {
       const bool is_unfit = beyond_limits(candidates[i].cage) > 0;
       settle(candidates[i], (is_unfit ? 2 : 1) * options_.settle);
@@ -158,7 +177,8 @@ private:
       }
     });
     return adopt(
-        found, [&](const Candidate& c) { return (c.value - now.value) / saved(c); }, now, true);
+        found, [&](const Candidate& c) { return (c.value - now.value) / saved(c); }, now, true,
+        [](const QuadCage&) { return true; });
   }
 
   bool put_in(Candidate& now, double factor) const {
@@ -171,27 +191,28 @@ private:
     std::vector<std::optional<Candidate>> found(strips.size());
     parallel_for(0, strips.size(), 1, progress_, [&](std::size_t i) {
       Candidate candidate{QuadCage(split_strip(mesh, strips[i])), 0, 0};
-      if (excess(candidate.cage, factor) > 0 || !is_valid(candidate.cage)) {
+      if (excess(candidate.cage, factor) > 0) {
         return;
       }
-      candidate.value = value_of(candidate.cage);
       candidate.price =
           -weight_of(mesh, strips[i]) / static_cast<double>(whole_vertices(candidate.cage) - count);
       found[i] = std::move(candidate);
     });
-    return adopt(found, price, now, factor > 1);
+    const auto first_new = static_cast<Index>(mesh.positions.size());
+    return adopt(found, price, now, factor > 1,
+                 [&](const QuadCage& cage) { return is_valid_with(cage, first_new); });
   }
 
-  template <class Price>
+  template <class Price, class MayBe>
   bool adopt(std::vector<std::optional<Candidate>>& found, const Price& price, Candidate& now,
-             bool at_any_price) const {
+             bool at_any_price, const MayBe& may_be) const {
     std::vector<Candidate> candidates;
     for (std::optional<Candidate>& candidate : found) {
       if (candidate) {
         candidates.push_back(std::move(*candidate));
       }
     }
-    std::optional<Candidate> best = best_of(candidates, price);
+    std::optional<Candidate> best = best_of(candidates, price, may_be);
     if (!best || (!at_any_price && best->price >= 0)) {
       return false;
     }
@@ -256,7 +277,7 @@ private:
         return std::nullopt;
       }
       QuadCage result(*less);
-      const std::vector<Index> unfit = unfit_faces(result);
+      const std::vector<Index> unfit = unfit_faces(result, drawn);
       if (unfit.empty()) {
         if (loses_a_part(guard_.model(), result, result.positions())) {
           return std::nullopt;

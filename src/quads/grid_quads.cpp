@@ -150,6 +150,7 @@ Result<Quadrangulated> make_grid_quads(const ModelSurface& surface, const GridQu
   // Each round takes as long as there are vertices, and more.
   constexpr int work = 800;
   loops.rounds = std::clamp(work / most, 1, 8);
+  loops.tries = std::clamp(work / most, 1, 3);
   exchange_loops(cage, guard, objective, loops, progress.part(0.3, 0.95));
   split_unfit(cage, options.quads.limits);
   settle_shapes(cage, guard, objective, settle, progress.part(0.95, 1));

@@ -53,6 +53,15 @@ bool cross(std::span<const Vec3> positions, const CageFace& s, const CageFace& t
 
 } // namespace
 
+std::optional<bool> KnownClear::find(const Triangle& sorted) const {
+  const auto it = known_.find(sorted);
+  return it != known_.end() ? std::optional(it->second) : std::nullopt;
+}
+
+void KnownClear::add(const Triangle& sorted, bool is_clear) {
+  known_.emplace(sorted, is_clear);
+}
+
 bool fit_together(const CageFace& s, const CageFace& t) {
   std::array<Index, 4> shared{};
   int count = 0;
@@ -107,7 +116,7 @@ bool loses_a_part(const ModelSurface& model, const QuadCage& cage,
 bool QuadGuard::is_clear(std::span<const Vec3> positions, const CageFace& face) const {
   const FaceParts parts(face);
   for (const Triangle& part : parts) {
-    if (model_->tree.too_near(at(positions, part), clearance_)) {
+    if (!keeps_clear(positions, part)) {
       return false;
     }
   }
@@ -115,6 +124,20 @@ bool QuadGuard::is_clear(std::span<const Vec3> positions, const CageFace& face) 
     return true;
   }
   return !encloses_a_part(positions, face);
+}
+
+bool QuadGuard::keeps_clear(std::span<const Vec3> positions, const Triangle& part) const {
+  if (known_ == nullptr) {
+    return !model_->tree.too_near(at(positions, part), clearance_);
+  }
+  Triangle sorted = part;
+  std::sort(sorted.begin(), sorted.end());
+  if (const std::optional<bool> known = known_->find(sorted)) {
+    return *known;
+  }
+  const bool is_clear = !model_->tree.too_near(at(positions, sorted), clearance_);
+  known_->add(sorted, is_clear);
+  return is_clear;
 }
 
 bool QuadGuard::encloses_a_part(std::span<const Vec3> positions, const CageFace& quad) const {
@@ -137,8 +160,7 @@ bool QuadGuard::encloses_a_part(std::span<const Vec3> positions, const CageFace&
 bool QuadGuard::is_free(const QuadCage& cage, std::span<const Index> faces,
                         const Triangle& part) const {
   const std::vector<Vec3>& x = cage.positions();
-  return !is_degenerate(x[part[0]], x[part[1]], x[part[2]]) &&
-         !model_->tree.too_near(at(x, part), clearance_) &&
+  return !is_degenerate(x[part[0]], x[part[1]], x[part[2]]) && keeps_clear(x, part) &&
          std::none_of(faces.begin(), faces.end(),
                       [&](Index f) { return crosses(x, part, cage.face(f)); });
 }
@@ -159,7 +181,12 @@ bool QuadGuard::is_crossed(const QuadCage& cage, std::span<const Vec3> positions
       return true;
     }
   }
-  return std::any_of(with.begin(), with.end(),
+  return is_crossed_by(positions, face, with);
+}
+
+bool QuadGuard::is_crossed_by(std::span<const Vec3> positions, const CageFace& face,
+                              std::span<const CageFace> others) {
+  return std::any_of(others.begin(), others.end(),
                      [&](const CageFace& other) { return cross(positions, face, other); });
 }
 

@@ -6,10 +6,39 @@
 #include "quads/quad_cage.h"
 #include "quads/quad_shape.h"
 
+#include <tbb/concurrent_unordered_map.h>
+
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace cagewright {
+
+/// For tables by indices.
+inline std::size_t hash_of_indices(std::span<const Index> indices) {
+  std::uint64_t h = 0;
+  for (const Index i : indices) {
+    constexpr std::uint64_t golden = 0x9e3779b97f4a7c15;
+    h = (h ^ i) * golden;
+    h ^= h >> 29U;
+  }
+  return static_cast<std::size_t>(h);
+}
+
+/// Which triangles between the vertices of a cage keep clear of the model, as far as it has been
+/// asked: good for as long as no vertex moves. Any number of threads may ask.
+class KnownClear {
+public:
+  [[nodiscard]] std::optional<bool> find(const Triangle& sorted) const;
+  void add(const Triangle& sorted, bool is_clear);
+
+private:
+  struct Hash {
+    std::size_t operator()(const Triangle& t) const { return hash_of_indices(t); }
+  };
+  tbb::concurrent_unordered_map<Triangle, bool, Hash> known_;
+};
 
 /// Decides whether faces may stand in a cage. Every part of every quad counts as a face of its own,
 /// and the tetrahedron between a quad's two cuttings must not hold a part of the model.
@@ -18,6 +47,14 @@ public:
   /// \param clearance least distance to the model, in its units
   QuadGuard(const ModelSurface& model, double clearance, const QuadLimits& limits)
       : model_(&model), clearance_(clearance), limits_(limits) {}
+
+  /// The same guard, which remembers what keeps clear of the model. No vertex may move meanwhile,
+  /// and what is known must live as long as it.
+  [[nodiscard]] QuadGuard while_still(KnownClear& known) const {
+    QuadGuard guard = *this;
+    guard.known_ = &known;
+    return guard;
+  }
 
   [[nodiscard]] const ModelSurface& model() const { return *model_; }
   [[nodiscard]] double clearance() const { return clearance_; }
@@ -40,6 +77,10 @@ public:
                                 std::span<const Box3> boxes, const CageFace& face, Index itself,
                                 std::span<const Index> without = {},
                                 std::span<const CageFace> with = {}) const;
+
+  /// True when the face crosses one of these.
+  [[nodiscard]] static bool is_crossed_by(std::span<const Vec3> positions, const CageFace& face,
+                                          std::span<const CageFace> others);
 
   /// True when the face may stand in the cage without the faces `without`, beside `with`. A quad
   /// that would be valid along one diagonal only is made tentative if that is allowed.
@@ -73,9 +114,12 @@ public:
                               std::span<const Box3> boxes, CageFace quad, Index itself) const;
 
 private:
+  [[nodiscard]] bool keeps_clear(std::span<const Vec3> positions, const Triangle& part) const;
+
   const ModelSurface* model_;
   double clearance_;
   QuadLimits limits_;
+  KnownClear* known_ = nullptr;
 };
 
 Box3 box_of(std::span<const Vec3> positions, const CageFace& face);

@@ -54,6 +54,14 @@ QuadCorners corners_of(std::span<const Vec3> positions, const CageFace& quad) {
   return {positions[quad[0]], positions[quad[1]], positions[quad[2]], positions[quad[3]]};
 }
 
+CageFace along_shorter_diagonal(std::span<const Vec3> positions, const CageFace& face) {
+  if (!face.is_quad()) {
+    return face;
+  }
+  const QuadCorners q = corners_of(positions, face);
+  return (q[1] - q[3]).squaredNorm() < (q[0] - q[2]).squaredNorm() ? face.turned(1) : face;
+}
+
 void split_unfit(QuadCage& cage, const QuadLimits& limits) {
   for (Index f = 0; f < cage.face_end(); ++f) {
     const CageFace face = cage.face(f);

@@ -49,6 +49,9 @@ QuadShape shape_of(const QuadCorners& q);
 
 QuadCorners corners_of(std::span<const Vec3> positions, const CageFace& quad);
 
+/// The same face; a quad begun at a corner of its shorter diagonal, along which it is cut.
+CageFace along_shorter_diagonal(std::span<const Vec3> positions, const CageFace& face);
+
 /// Quads beyond the limits, and tentative ones, become two triangles each.
 void split_unfit(QuadCage& cage, const QuadLimits& limits);
 

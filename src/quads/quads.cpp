@@ -1,9 +1,12 @@
 #include "quads/quads.h"
 
+#include "core/parallel.h"
 #include "mesh/shape_limits.h"
 #include "quads/edge_loops.h"
+#include "quads/limb_caps.h"
 #include "quads/matching.h"
 #include "quads/pairing.h"
+#include "quads/quad_merit.h"
 #include "quads/quad_weights.h"
 #include "quads/relax_quads.h"
 #include "quads/retile.h"
@@ -13,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -51,18 +55,23 @@ struct Setting {
   const ModelSurface& surface;
   const Objective& objective;
   const QuadOptions& options;
-  double room = 1; ///< how far the cage moves off the model meanwhile, in what the options say
 
   [[nodiscard]] QuadGuard strict() const {
     return {surface, options.clearance * surface.diagonal, options.limits};
   }
 };
 
+/// One way to go about it.
+struct Way {
+  double room = 1;   ///< how far the cage moves off the model meanwhile, in what the options say
+  double lone = 4;   ///< what a triangle costs: see FaceWishes
+  bool caps = false; ///< limbs end in a face where they ended in triangles
+};
+
 /// Pairs and tiles the faces of a cage that has room, and moves its vertices, in rounds from much
 /// room and wide limits to none and those asked for.
-///
-/// \param lone  what a triangle costs: see FaceWishes
-QuadCage with_quads(QuadCage cage, const Setting& setting, double lone, const Progress& progress) {
+QuadCage with_quads(QuadCage cage, const Setting& setting, const Way& way,
+                    const Progress& progress) {
   const QuadOptions& options = setting.options;
   const DirectionField field(cut(cage));
   const double clearance = options.clearance * setting.surface.diagonal;
@@ -79,17 +88,23 @@ QuadCage with_quads(QuadCage cage, const Setting& setting, double lone, const Pr
     const QuadGuard guard(setting.surface, clearance, limits);
     Taste taste;
     taste.wishes.limits = limits;
-    taste.wishes.lone = lone;
+    taste.wishes.lone = way.lone;
     taste.wishes.beyond = is_last ? 0 : 60;
-    if (is_last) {
+    const bool may_cap = way.caps && round >= rounds - 2;
+    if (is_last || may_cap) {
       split_unfit(cage, limits);
     }
+    if (may_cap) {
+      cap_limbs(cage, guard, wide_bend);
+    }
     cage.renumber_faces();
-    pair_triangles(cage, guard, field, taste);
-    retile(cage, guard, field, taste, part.part(0, 0.5));
+    KnownClear known;
+    const QuadGuard still = guard.while_still(known);
+    pair_triangles(cage, still, field, taste);
+    retile(cage, still, field, taste, part.part(0, 0.5));
     cage.renumber_faces();
     RelaxQuadsOptions settle;
-    settle.keep = options.clearance + slack * setting.room * options.room;
+    settle.keep = options.clearance + slack * way.room * options.room;
     settle.steps = is_last ? 8 : 4;
     relax_quads(cage, guard, setting.objective, settle, part.part(0.5, 1));
   }
@@ -97,39 +112,15 @@ QuadCage with_quads(QuadCage cage, const Setting& setting, double lone, const Pr
   return cage;
 }
 
-/// The first of several tries that has enough quads, each with triangles dearer than in the last:
-/// there are fewer of them then, and quads that need more bending. If none has, the one with most.
-QuadCage with_enough_quads(const QuadCage& roomy, const Setting& setting,
-                           std::span<const double> lone, const Progress& progress) {
-  QuadCage best = roomy;
-  double most = -1;
-  double done = 0;
-  for (std::size_t i = 0;
-       i < lone.size() && most < shape_limits::enough_quads && !progress.cancelled(); ++i) {
-    const double then = i == 0 ? 0.7 : (done + 1) / 2; // more tries are seldom needed
-    QuadCage cage = with_quads(roomy, setting, lone[i], progress.part(done, then));
-    done = then;
-    const double share = report_of(cage.to_polygons()).share;
-    if (share > most) {
-      most = share;
-      best = std::move(cage);
-    }
-  }
-  return best;
-}
-
-constexpr std::array triangles_dearer = {4.0, 6.0, 8.0, 12.0}; // from try to try
-
-/// Quads made with the setting's room, in so many tries at most, as round as they get.
-QuadCage quads_with_room(QuadCage cage, const Setting& setting, std::size_t tries,
-                         const Progress& progress) {
+/// Quads made one way, as round as pays.
+QuadCage quads_made(QuadCage cage, const Setting& setting, const Way& way,
+                    const Progress& progress) {
   const QuadGuard strict = setting.strict();
   const double clearance = setting.options.clearance;
   relax_quads(cage, strict, setting.objective,
-              {.steps = 3, .keep = clearance + setting.room * setting.options.room},
+              {.steps = 3, .keep = clearance + way.room * setting.options.room},
               progress.part(0, 0.1));
-  cage = with_enough_quads(cage, setting, std::span(triangles_dearer).first(tries),
-                           progress.part(0.1, 0.95));
+  cage = with_quads(std::move(cage), setting, way, progress.part(0.1, 0.95));
   settle_shapes(cage, strict, setting.objective, {.keep = clearance}, progress.part(0.95, 1));
   return cage;
 }
@@ -138,40 +129,59 @@ double objective_of(QuadCage cage, const Setting& setting) {
   return relax_quads(cage, setting.strict(), setting.objective, {.steps = 0});
 }
 
-/// What a cage of quads costs: too few of them are worse than a cage that is a little looser.
+/// What a cage of quads costs: the objective, times what webs and ill shaped faces add, and for
+/// each vertex: those that are saved can be spent elsewhere.
 double cost_of(const QuadCage& cage, const Setting& setting) {
-  constexpr double at_once = 0.15;
-  constexpr double by_share = 2;
-  const double missing = shape_limits::enough_quads - report_of(cage.to_polygons()).share;
-  return objective_of(cage, setting) * (1 + (missing > 0 ? at_once + by_share * missing : 0));
+  const PolygonMesh faces = cage.to_polygons();
+  const double webbing =
+      setting.options.webbing ? setting.options.webbing(to_triangle_mesh(faces)) : 0;
+  return objective_of(cage, setting) * (1 + webbing) *
+         dearer_by_shapes(report_of(faces), shape_limits::wanted_quads) *
+         static_cast<double>(faces.positions.size()) / static_cast<double>(cage.vertex_end());
 }
 
-/// Quads with all the room that the options give, which leads to the best shapes. Where they come
-/// out much looser than the triangles they were made of, thin limbs grew together in so much room:
-/// then the cheapest of these and of quads made nearer to the model.
-QuadCage best_of_rooms(const QuadCage& start, const Setting& setting, const Progress& progress) {
-  constexpr double much_looser = 1.25;
-  constexpr double usual = 0.8; // of the time: seldom are there other rooms
-  constexpr std::array less_room = {0.6, 0.3};
-  QuadCage best = quads_with_room(start, setting, triangles_dearer.size(), progress.part(0, usual));
-  if (objective_of(best, setting) <= much_looser * objective_of(start, setting)) {
-    return best;
-  }
-  double least = cost_of(best, setting);
-  double done = usual;
-  for (const double room : less_room) {
-    const double then = (done + 1) / 2;
-    Setting nearer = setting;
-    nearer.room = room;
-    QuadCage cage = quads_with_room(start, nearer, 1, progress.part(done, then));
-    done = then;
+/// The cheapest of several tries. With much room quads get better shapes, and thin limbs that are
+/// near each other grow together; where triangles are dear there are fewer of them, and quads that
+/// need more bending; limbs that end in a face have fewer triangles, and those that end in a point
+/// are tighter. Which is better for a model shows only when it is done. Two at least are made, side
+/// by side; more while the best is not much like what it was made of; of large cages fewer. What
+/// has fewer quads than triangles is taken only if all have.
+QuadCage best_of_ways(const QuadCage& start, const Setting& setting, const Progress& progress) {
+  constexpr std::array ways = {Way{0.6, 4, true}, Way{0.4, 4}, Way{0.6, 8, true}, Way{1, 12}};
+  constexpr std::size_t at_once = 2;
+  constexpr std::size_t most_faces = 1200; // of all tries together
+  constexpr double good_enough = 1.15;     // times what the triangles cost
+  constexpr double few = 0.5;
+  const std::size_t most = std::clamp<std::size_t>(most_faces / start.face_end(), 1, ways.size());
+  const double enough = good_enough * objective_of(start, setting);
+  QuadCage best = start;
+  using Price = std::pair<bool, double>; // whether there are few quads; what it costs
+  Price least{true, std::numeric_limits<double>::infinity()};
+  for (std::size_t done = 0;
+       done < most && least > Price{false, enough} && !progress.cancelled();) {
+    const std::size_t then = std::min(done + at_once, most);
+    const auto share = [&](std::size_t tries) {
+      return static_cast<double>(tries) / static_cast<double>(most);
+    };
+    progress(share(done), "make quads");
+    std::vector<QuadCage> made(then - done, start);
+    std::vector<Price> prices(then - done);
+    const Progress quiet = progress.quiet();
+    parallel_for(0, made.size(), 1, quiet, [&](std::size_t i) {
+      made[i] = quads_made(start, setting, ways[done + i],
+                           made.size() > 1 ? quiet : progress.part(share(done), share(then)));
+      prices[i] = {report_of(made[i].to_polygons()).share < few, cost_of(made[i], setting)};
+    });
     if (progress.cancelled()) {
-      break;
+      break; // what was made last is not to be used
     }
-    if (const double cost = cost_of(cage, setting); cost < least) {
-      least = cost;
-      best = std::move(cage);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      if (prices[i] < least) {
+        least = prices[i];
+        best = std::move(made[i]);
+      }
     }
+    done = then;
   }
   return best;
 }
@@ -183,14 +193,7 @@ void turn_quads(QuadCage& cage) {
   for (Index f = 0; f < cage.face_end(); ++f) {
     if (cage.has_face(f)) {
       removed.push_back(f);
-      added.push_back(cage.face(f));
-      CageFace& face = added.back();
-      const auto length = [&](int i) {
-        return (cage.positions()[face[i]] - cage.positions()[face[i + 2]]).squaredNorm();
-      };
-      if (face.is_quad() && length(1) < length(0)) {
-        face = face.turned(1);
-      }
+      added.push_back(along_shorter_diagonal(cage.positions(), cage.face(f)));
     }
   }
   cage.replace(removed, added);
@@ -269,7 +272,7 @@ Result<Quadrangulated> make_quads(TriangleView start, const ModelSurface& surfac
   }
   const double face_area = surface_area(start) / static_cast<double>(start.triangles.size());
   const Objective objective(surface, weights_for(model, options, face_area));
-  cage = best_of_rooms(cage, {surface, objective, options}, progress);
+  cage = best_of_ways(cage, {surface, objective, options}, progress);
   if (progress.cancelled()) {
     return Error::cancelled();
   }

@@ -9,6 +9,7 @@
 #include <cagewright/mesh/polygon_mesh.h>
 #include <cagewright/quads/quad_report.h>
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct QuadOptions {
   /// Least distance from every part of every face to the model, in diagonals of the model's box.
   /// The cage to start from must keep it.
   double clearance = 0.002;
-  /// How far the cage moves off the model, in diagonals, while its faces are being paired.
+  /// How far the cage moves off the model at most, in diagonals, while its faces are being paired.
   double room = 0.01;
   /// What lengths are fractions of. 0: the diagonal of the model's box.
   double diagonal = 0;
@@ -32,6 +33,9 @@ struct QuadOptions {
   std::span<const Index> parts = {};
   /// By part: where its border to parts of smaller numbers stays. Or empty.
   std::span<const SeamBand> bands = {};
+  /// The share of the space between limbs that a cage encloses (see SpaceBetween), which counts
+  /// against it where there are several to choose from. None: not asked.
+  std::function<double(TriangleView cage)> webbing = {};
   double square = 40;  ///< weight of large gaps: see ObjectiveWeights
   double shape = 7e-4; ///< weight of well shaped faces: see ObjectiveWeights
 };
@@ -44,9 +48,9 @@ struct Quadrangulated {
   QuadReport report;
 };
 
-/// Makes a quad-dominant cage of a cage of triangles, with the same vertices or fewer, moved. While
-/// fewer than shape_limits::enough_quads of the faces are quads it is tried again, four times at
-/// most.
+/// Makes a quad-dominant cage of a cage of triangles, with the same vertices or fewer, moved: the
+/// cheapest, by volume, gaps, webs and shapes, of two to four; of large cages of
+/// fewer.
 ///
 /// The cage is valid and keeps the clearance: so does the result, because no change is made
 /// that was not checked. It may be open if its border lies in the plane x = 0: then it is one half

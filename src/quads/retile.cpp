@@ -3,6 +3,8 @@
 #include "core/parallel.h"
 #include "improve/objective.h"
 
+#include <tbb/concurrent_unordered_map.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +16,12 @@
 
 namespace cagewright {
 namespace {
+
+struct HashOfCorners {
+  std::size_t operator()(const std::array<Index, 4>& corners) const {
+    return hash_of_indices(corners);
+  }
+};
 
 /// Triangles and quads over the corners 0, 1, ... of a polygon.
 using Tiling = std::vector<CageFace>;
@@ -265,6 +273,27 @@ private:
     return parts.count == 4 ? sum / 2 : sum;
   }
 
+  // What a face costs, which is asked again and again while no vertex moves. It is taken begun at
+  // its least corner: then it does not matter who asks first.
+  [[nodiscard]] double known_cost(const CageFace& face) const {
+    int least = 0;
+    for (int i = 1; i < face.size; ++i) {
+      least = face[i] < face[least] ? i : least;
+    }
+    CageFace begun = face;
+    for (int i = 0; i < face.size; ++i) {
+      begun.corners[i] = face[least + i];
+    }
+    const std::array<Index, 4> key{begun[0], begun[1], begun[2],
+                                   face.is_quad() ? begun[3] : no_index};
+    if (const auto it = costs_.find(key); it != costs_.end()) {
+      return it->second;
+    }
+    const double cost = cost_of(cage_.positions(), field_, taste_, begun);
+    costs_.emplace(key, cost);
+    return cost;
+  }
+
   // What is known of a face that a region may be tiled with.
   struct Known {
     CageFace face; // on the ring
@@ -326,8 +355,7 @@ private:
       for (std::size_t i = 0; i < tiling.faces.size(); ++i) {
         Known& face = known[tiling.faces[i]];
         if (!face.has_cost) {
-          face.cost = cost_of(cage_.positions(), field_, taste_, face.face) +
-                      volume_cost * volume_from(origin, face.face);
+          face.cost = known_cost(face.face) + volume_cost * volume_from(origin, face.face);
           face.has_cost = true;
         }
         then += face.cost;
@@ -362,7 +390,7 @@ private:
         all_fit = face.fits == Known::Fits::yes;
         exchange.added.push_back(face.face);
       }
-      if (all_fit && allows(exchange)) {
+      if (all_fit && fit_beside_each_other(exchange)) {
         return exchange;
       }
     }
@@ -435,14 +463,28 @@ private:
 
   [[nodiscard]] bool may_be_tentative() const { return taste_.wishes.beyond > 0; }
 
-  // Quads that have to be tentative cost more: it must pay all the same.
-  [[nodiscard]] bool allows(Exchange& exchange) const {
-    if (!guard_.allows(cage_, boxes_, exchange.removed, exchange.added, taste_.wishes.beyond > 0)) {
-      return false;
+  // Whether new faces each of which fits in the place of the old ones fit together, too.
+  [[nodiscard]] bool fit_beside_each_other(const Exchange& exchange) const {
+    const std::span<const CageFace> added = exchange.added;
+    for (std::size_t i = 1; i < added.size(); ++i) {
+      if (QuadGuard::is_crossed_by(cage_.positions(), added[i], added.first(i))) {
+        return false;
+      }
     }
+    return pays(exchange) && !guard_.loses_a_part(cage_, exchange.removed, exchange.added);
+  }
+
+  // Quads that have to be tentative cost more: it must pay all the same.
+  [[nodiscard]] bool pays(const Exchange& exchange) const {
     const auto tentative = std::count_if(exchange.added.begin(), exchange.added.end(),
                                          [](const CageFace& face) { return face.tentative; });
     return exchange.gain > taste_.tentative * static_cast<double>(tentative);
+  }
+
+  [[nodiscard]] bool allows(Exchange& exchange) const {
+    return guard_.allows(cage_, boxes_, exchange.removed, exchange.added,
+                         taste_.wishes.beyond > 0) &&
+           pays(exchange);
   }
 
   // No new triangle is a needle, no new face folds onto a neighbour.
@@ -500,6 +542,7 @@ private:
   const Taste& taste_;
   std::vector<TilingTable> tilings_;
   std::vector<Box3> boxes_;
+  mutable tbb::concurrent_unordered_map<std::array<Index, 4>, double, HashOfCorners> costs_;
 };
 
 } // namespace

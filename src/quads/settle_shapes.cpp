@@ -1,33 +1,37 @@
 #include "quads/settle_shapes.h"
 
+#include "mesh/shape_limits.h"
+#include "quads/quad_merit.h"
+
 #include <algorithm>
+#include <utility>
 
 namespace cagewright {
 namespace {
 
-constexpr double thin = 0.152; // 2 r / R
+constexpr double settled_thin = 1.013 * shape_limits::thin; // 2 r / R: with a little to spare
 
 } // namespace
 
 double thin_share(const QuadCage& cage) {
   const std::vector<Vec3>& x = cage.positions();
-  std::size_t count = 0;
-  std::size_t faces = 0;
+  std::ptrdiff_t count = 0;
+  std::size_t triangles = 0;
   for (Index f = 0; f < cage.face_end(); ++f) {
     if (cage.has_face(f)) {
-      const FaceParts parts(cage.face(f), FaceParts::Of::all);
-      ++faces;
-      count += std::any_of(parts.begin(), parts.end(), [&](const Triangle& t) {
-        return shape_quality({x[t[0]], x[t[1]], x[t[2]]}) < thin;
+      const FaceParts parts(along_shorter_diagonal(x, cage.face(f)), FaceParts::Of::all);
+      const int written = std::min(2, parts.count);
+      triangles += static_cast<std::size_t>(written);
+      count += std::count_if(parts.begin(), parts.begin() + written, [&](const Triangle& t) {
+        return shape_quality({x[t[0]], x[t[1]], x[t[2]]}) < settled_thin;
       });
     }
   }
-  return faces > 0 ? static_cast<double>(count) / static_cast<double>(faces) : 0;
+  return triangles > 0 ? static_cast<double>(count) / static_cast<double>(triangles) : 0;
 }
 
 void settle_shapes(QuadCage& cage, const QuadGuard& guard, const Objective& objective,
                    const RelaxQuadsOptions& options, const Progress& progress) {
-  constexpr double enough = 0.05; // of the faces may be thin
   constexpr int attempts = 7;
   constexpr double dearer = 3;
   RelaxQuadsOptions rounder = options;
@@ -37,24 +41,39 @@ void settle_shapes(QuadCage& cage, const QuadGuard& guard, const Objective& obje
   rounder.slender = 1 / dearer;
   rounder.free_defect = 1.5;      // rectangles four times as long as wide
   constexpr double settled = 0.7; // of the time
-  int done = 0;
-  for (; done < attempts && thin_share(cage) > enough && !progress.cancelled(); ++done) {
+  const auto tightness = [&](QuadCage other) {
+    RelaxQuadsOptions none = options;
+    none.steps = 0;
+    return relax_quads(other, guard, objective, none);
+  };
+  const auto cost = [&](const QuadCage& other) {
+    return tightness(other) * dearer_by_thin(thin_share(other));
+  };
+  if (thin_share(cage) <= shape_limits::few_thin) {
+    return;
+  }
+  const double before = cost(cage);
+  constexpr double won_back = 1.3; // times as tight, at most, as where it stops
+  QuadCage rounded = cage;
+  for (int done = 0; done < attempts && thin_share(rounded) > shape_limits::few_thin &&
+                     tightness(rounded) < won_back * before && !progress.cancelled();
+       ++done) {
     rounder.corner *= dearer;
     rounder.slender *= dearer;
-    relax_quads(cage, guard, objective, rounder,
+    relax_quads(rounded, guard, objective, rounder,
                 progress.part(settled * done / attempts, settled * (done + 1) / attempts));
-  }
-  if (done == 0) {
-    return;
   }
   // What that has cost in tightness is won back where no face becomes thin.
   QuadLimits limits = guard.limits();
-  limits.min_quality = std::max(limits.min_quality, thin);
+  limits.min_quality = std::max(limits.min_quality, settled_thin);
   RelaxQuadsOptions tight = options;
   tight.steps = 8;
   tight.first_step = rounder.first_step;
   const QuadGuard round(guard.model(), guard.clearance(), limits);
-  relax_quads(cage, round, objective, tight, progress.part(settled, 1));
+  relax_quads(rounded, round, objective, tight, progress.part(settled, 1));
+  if (cost(rounded) < before) {
+    cage = std::move(rounded);
+  }
 }
 
 } // namespace cagewright

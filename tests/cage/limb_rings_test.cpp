@@ -108,6 +108,37 @@ TEST(RingsAtJoints, AreInCagesOfTriangles) {
   }
 }
 
+/// A trunk with two straight arms, all of boxes: blocks go round it without a loss.
+TriangleMesh boxy_figure() {
+  const auto box = [](const Vec3& center, const Vec3& half) {
+    TriangleMesh mesh = make_cube();
+    for (Vec3& p : mesh.positions) {
+      p = center + p.cwiseProduct(half);
+    }
+    return mesh;
+  };
+  TriangleMesh mesh = box({0, 0, 0}, {1, 1.6, 0.7});
+  mesh = joined(mesh, box({2.4, 0, 0}, {1.5, 0.3, 0.3}));
+  return joined(mesh, box({-2.4, 0, 0}, {1.5, 0.3, 0.3}));
+}
+
+TEST(RingsAtJoints, AreInCagesOfQuadsThatBlocksWouldFitAsWell) {
+  const std::vector<LimbJoint> joints = {{{2.4, 0, 0}, Vec3::Zero()}, {{-2.4, 0, 0}, Vec3::Zero()}};
+  GenerateOptions options;
+  options.vertices = 60;
+  options.quads = true;
+  options.joints = joints;
+  const Result<GeneratedCage> made = generate(boxy_figure(), options);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_LE(made->faces.positions.size(), 60U);
+  std::size_t at_joints = 0;
+  for (const std::vector<Index>& ring : made->limb_rings) {
+    const double x = middle_of(ring, made->faces.positions).x();
+    at_joints += std::abs(std::abs(x) - 2.4) < 0.2 ? 1 : 0;
+  }
+  EXPECT_EQ(at_joints, 2U);
+}
+
 TEST(Limbs, OfAFigureAreItsArms) {
   const TriangleMesh start = fine_cage(figure());
   const std::vector<Limb> limbs = find_limbs(start, limb_cuts(figure()), 50);

@@ -9,13 +9,17 @@
 #include "quads/settle_shapes.h"
 #include "spatial/bvh.h"
 #include "support/models.h"
+#include <cagewright/mesh/measures.h>
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/validate_cage.h>
+#include <cagewright/validate/webbing.h>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace cagewright {
 namespace {
@@ -174,6 +178,33 @@ INSTANTIATE_TEST_SUITE_P(
                     RealModel{"Armadillo", {"armadillo.off", "armadillo.obj"}, 80}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
+/// Six long arms all round, as of a starfish.
+TriangleMesh starfish() {
+  TriangleMesh all;
+  for (int k = 0; k < 6; ++k) {
+    const double angle = k * std::numbers::pi / 3 + 0.1;
+    TriangleMesh arm = make_cube();
+    for (Vec3& p : arm.positions) {
+      p = Vec3(5 * p.x() + 5, 0.6 * p.y(), 0.5 * p.z());
+      p = Vec3(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
+               std::sin(angle) * p.x() + std::cos(angle) * p.y(), p.z());
+    }
+    all = k == 0 ? arm : joined(all, arm);
+  }
+  return all;
+}
+
+TEST(Quads, LeaveThinArmsApart) {
+  // With much room while faces are paired they grow together, and stay so.
+  const TriangleMesh model = starfish();
+  const TriangleMesh cage = cage_of(model, 60);
+  const Result<Quadrangulated> made = make_quads(cage, model, {.clearance = clearance});
+  ASSERT_TRUE(made);
+  expect_good_quads(made->cage, model);
+  EXPECT_LE(SpaceBetween(model).share_inside(to_triangle_mesh(made->cage)), 0.05);
+  EXPECT_LE(signed_volume(to_triangle_mesh(made->cage)), 1.3 * signed_volume(cage));
+}
+
 TEST(Quads, AreTheSameOnAnyNumberOfThreads) {
   const TriangleMesh model = figure();
   const TriangleMesh cage = cage_of(model, 40);
@@ -284,6 +315,24 @@ TEST(SettleShapes, LeavesACageOfGoodQuadsAsItIs) {
   const Objective objective(surface, {});
   settle_shapes(cage, guard, objective, {});
   EXPECT_EQ(cage.positions(), before);
+}
+
+TEST(SettleShapes, LeavesALongArmThinRatherThanMakeItMuchWider) {
+  const TriangleMesh model = [] {
+    TriangleMesh bar = make_cube();
+    for (Vec3& p : bar.positions) {
+      p = p.cwiseProduct(Vec3(92, 0.9, 0.9));
+    }
+    return bar;
+  }();
+  QuadCage cage(three_cells({-93, -30, 30, 93}, 1));
+  const double volume = signed_volume(to_triangle_mesh(cage.to_polygons()));
+  ASSERT_GT(thin_share(cage), 0.5);
+  const ModelSurface surface(model, 0);
+  const QuadGuard guard(surface, 0.05, {});
+  const Objective objective(surface, {});
+  settle_shapes(cage, guard, objective, {});
+  EXPECT_LE(signed_volume(to_triangle_mesh(cage.to_polygons())), 1.8 * volume);
 }
 
 TEST(Quads, OfNothingOrOfAnOpenCageAreRefused) {
