@@ -10,6 +10,7 @@ from .errors import Cancelled
 
 _MOST_THREADS = 1024  # more make no difference
 _PATIENCE = 0.4  # seconds that a call gets to stop before Ctrl-C is answered without it
+_MOMENT = 0.1  # seconds
 
 
 def control(threads):
@@ -62,14 +63,18 @@ class _Call:
         lib.cw_stop_request(self._stop.pointer)
 
     def wait(self, timeout=None):
+        # A signal that comes just before a thread waits for ever does not wake it: the waits are short ones.
         with self._changed:
+            while timeout is None and not self._finished:
+                self._changed.wait(_MOMENT)
             return self._changed.wait_for(lambda: self._finished, timeout)
 
     def reports(self):
         """What is told, as it comes, to the end of the call."""
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._finished or self._reports)
+                while not (self._finished or self._reports):
+                    self._changed.wait(_MOMENT)
                 if not self._reports:
                     return
                 report = self._reports.popleft()
