@@ -17,6 +17,11 @@ RULES = [
      ("src/render/", "src/coordinates/mean_value.cpp")),
     (r"\bstd::(atomic_ref|stop_token|stop_source|stop_callback|jthread)\b",
      "is missing from clang's libc++; see StopFlag in core/progress.h", ()),
+    (r"\bstd::ranges::", "is missing from clang's libc++; the algorithms of <algorithm> are there", ()),
+    (r"\bstd::from_chars\(", "is missing from clang's libc++ but for integers; see core/parse.h",
+     ("src/core/parse.h", "src/io/", "src/deform/npz.cpp")), # integers
+    (r"\bfopen\(", "takes no name that is not of narrow characters; see io/native_file.h", ("src/io/native_file.cpp",)),
+    (r"#include <sys/resource\.h>", "is POSIX's alone; see core/memory.h", ("src/core/memory.cpp",)),
     (r"\bEigen::AngleAxis", "calls the C library's sine; see core/rotation.h", ()),
 ]
 

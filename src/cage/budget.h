@@ -20,7 +20,8 @@ inline int vertices_allowed(const GenerateOptions& options) {
 
 /// What is said for a reason; null: nothing.
 inline const Remark* find(const GeneratedCage& cage, Reason reason) {
-  const auto at = std::ranges::find(cage.remarks, reason, &Remark::reason);
+  const auto at = std::find_if(cage.remarks.begin(), cage.remarks.end(),
+                               [&](const Remark& remark) { return remark.reason == reason; });
   return at == cage.remarks.end() ? nullptr : &*at;
 }
 

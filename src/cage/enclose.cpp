@@ -187,7 +187,7 @@ private:
       }
     }
     if (!(spread < worth_it * first) ||
-        std::ranges::any_of(at_, [](const Vec3& p) { return !p.allFinite(); })) {
+        std::any_of(at_.begin(), at_.end(), [](const Vec3& p) { return !p.allFinite(); })) {
       at_ = given;
     }
   }
@@ -226,7 +226,7 @@ private:
     for (const Pair& pair : pairs) {
       sorted.push_back(pair.outside);
     }
-    std::ranges::sort(sorted);
+    std::sort(sorted.begin(), sorted.end());
     const double median = sorted[sorted.size() / 2];
     const double cap =
         2 * (sorted[sorted.size() * 3 / 4] - sorted[sorted.size() / 4]) + guard_.clearance();
@@ -352,9 +352,9 @@ private:
                                  const TriangleBvh& tree, int cutting) const {
     const Vec3(&t)[3] = tree.corners(nearest.triangle);
     constexpr double inner = 1e-9;
+    const auto weights = barycentric(nearest.point, Corners{{t[0], t[1], t[2]}});
     const bool is_over_face =
-        std::ranges::all_of(barycentric(nearest.point, Corners{{t[0], t[1], t[2]}}),
-                            [](double weight) { return weight > inner; });
+        std::all_of(weights.begin(), weights.end(), [](double weight) { return weight > inner; });
     return is_over_face ? (p - nearest.point).dot(normal_of(t)) < 0 : is_wound_round(p, cutting);
   }
 
@@ -436,7 +436,8 @@ private:
     const Positions given = at_;
     for (int round = 0;; ++round) {
       const std::vector<std::uint8_t> is_crossed = crossed(at_);
-      if (std::ranges::none_of(is_crossed, [](std::uint8_t is) { return is != 0; })) {
+      if (std::none_of(is_crossed.begin(), is_crossed.end(),
+                       [](std::uint8_t is) { return is != 0; })) {
         break;
       }
       if (round == most_rounds) {

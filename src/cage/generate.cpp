@@ -310,7 +310,8 @@ std::string_view name_of(Reason reason) {
 }
 
 bool GeneratedCage::is_as_asked() const {
-  return std::ranges::none_of(remarks, &Remark::is_shortfall);
+  return std::none_of(remarks.begin(), remarks.end(),
+                      [](const Remark& remark) { return remark.is_shortfall; });
 }
 
 Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& options,

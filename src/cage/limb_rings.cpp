@@ -439,8 +439,8 @@ std::vector<Vec3> directions_at(const LimbJoint& joint, std::span<const LimbCut>
   }
   const Vec3 along = joint.along / length;
   std::vector<Vec3> directions = {along};
-  std::ranges::copy_if(all, std::back_inserter(directions),
-                       [&](const Vec3& d) { return std::abs(d.dot(along)) > near; });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(directions),
+               [&](const Vec3& d) { return std::abs(d.dot(along)) > near; });
   return directions;
 }
 

@@ -1,8 +1,9 @@
 #include <cagewright/cage/option_table.h>
 
+#include "core/parse.h"
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
@@ -188,11 +189,6 @@ Error refusal(std::string_view text, const CageOption& option) {
   return {ErrorCode::invalid_option, std::move(message)};
 }
 
-template <class T> bool parse(std::string_view text, T& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 bool is_within(const IntegerOption& option, int value) {
   return (value >= option.least && value <= option.most) ||
          (value == 0 && !option.zero_means.empty());
@@ -223,7 +219,8 @@ std::span<const CageOption> cage_options() {
 }
 
 const CageOption* find_cage_option(std::string_view name) {
-  const auto found = std::ranges::find(options_table, name, &CageOption::name);
+  const auto found = std::find_if(options_table.begin(), options_table.end(),
+                                  [&](const CageOption& option) { return option.name == name; });
   return found == options_table.end() ? nullptr : &*found;
 }
 
@@ -238,14 +235,14 @@ bool applies(const CageOption& option, const GenerateOptions& options) {
 Status set_from_text(const CageOption& option, std::string_view text, GenerateOptions& options) {
   if (const auto* whole = std::get_if<IntegerOption>(&option.kind)) {
     int value = 0;
-    if (!parse(text, value) || !is_within(*whole, value)) {
+    if (!parse_number(text, value) || !is_within(*whole, value)) {
       return refusal(text, option);
     }
     whole->set(options, value);
   } else if (const auto* real = std::get_if<NumberOption>(&option.kind)) {
     const bool is_percent = real->is_length && text.ends_with('%');
     double value = 0;
-    if (!parse(text.substr(0, text.size() - (is_percent ? 1 : 0)), value)) {
+    if (!parse_number(text.substr(0, text.size() - (is_percent ? 1 : 0)), value)) {
       return refusal(text, option);
     }
     value = is_percent ? value / 100 : value;
@@ -255,9 +252,11 @@ Status set_from_text(const CageOption& option, std::string_view text, GenerateOp
     options.*real->member = value;
   } else {
     const auto& words = std::get<ChoiceOption>(option.kind);
-    const auto old = std::ranges::find(old_words, text, &decltype(old_words)::value_type::first);
+    const auto old = std::find_if(old_words.begin(), old_words.end(),
+                                  [&](const auto& pair) { return pair.first == text; });
     const std::string_view word = old == old_words.end() ? text : old->second;
-    const auto found = std::ranges::find(words.words, word, &OptionWord::word);
+    const auto found = std::find_if(words.words.begin(), words.words.end(),
+                                    [&](const OptionWord& known) { return known.word == word; });
     if (found == words.words.end()) {
       return refusal(text, option);
     }

@@ -73,8 +73,8 @@ PartMaker::PartMaker(TriangleView model, const GenerateOptions& options,
 AlikeSurfaces PartMaker::surfaces(TriangleView part) const {
   if (may_be_two_) {
     HalfModel side = half_model(part, frame_);
-    if (std::ranges::all_of(side.mesh.positions,
-                            [&](const Vec3& p) { return p.x() > keep_off_; })) {
+    if (std::all_of(side.mesh.positions.begin(), side.mesh.positions.end(),
+                    [&](const Vec3& p) { return p.x() > keep_off_; })) {
       return {std::move(side.mesh), 2};
     }
   }
@@ -145,7 +145,8 @@ Result<GeneratedCage> PartMaker::make_two_once(TriangleView part, const Generate
   if (!made) {
     return made;
   }
-  if (std::ranges::any_of(made->faces.positions, [](const Vec3& p) { return !(p.x() > 0); })) {
+  if (std::any_of(made->faces.positions.begin(), made->faces.positions.end(),
+                  [](const Vec3& p) { return !(p.x() > 0); })) {
     return Error{ErrorCode::no_valid_cage, "the cage of one side reaches across the mirror plane"};
   }
   restate(*made, diagonal(side.mesh.positions) / whole);

@@ -99,7 +99,8 @@ Result<PromisingEnvelope> promising_envelope(const Ground& ground, const Generat
       return made.error();
     } // else it is not possible, and need not be
   }
-  std::ranges::stable_sort(tries, {}, &Try::cost);
+  std::stable_sort(tries.begin(), tries.end(),
+                   [](const Try& a, const Try& b) { return a.cost < b.cost; });
   PromisingEnvelope result{std::move(tries[0].envelope), std::nullopt};
   constexpr double nearly = 1.1;
   if (tries.size() > 1 && tries[1].cost < tries[0].cost.times(nearly)) {

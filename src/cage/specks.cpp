@@ -85,7 +85,8 @@ Result<Specks> find_specks(TriangleView model, const Progress& progress) {
   Specks specks;
   specks.of_vertex.assign(model.positions.size(), false);
   const std::vector<Index> pieces = pieces_of(model);
-  if (std::ranges::all_of(pieces, [&](Index piece) { return piece == pieces.front(); })) {
+  if (std::all_of(pieces.begin(), pieces.end(),
+                  [&](Index piece) { return piece == pieces.front(); })) {
     return specks;
   }
   // Seen from far away what is near the model hangs together with it: so once more without what has
@@ -98,7 +99,9 @@ Result<Specks> find_specks(TriangleView model, const Progress& progress) {
       return numbers.error();
     }
     const std::vector<Group> groups = groups_of(rest, pieces, *numbers);
-    const Group& body = *std::ranges::max_element(groups, {}, &Group::area);
+    const Group& body =
+        *std::max_element(groups.begin(), groups.end(),
+                          [](const Group& a, const Group& b) { return a.area < b.area; });
     std::vector<bool> is_speck;
     for (const Group& group : groups) {
       is_speck.push_back(&group != &body && group.area <= least_share * body.area &&
@@ -109,7 +112,7 @@ Result<Specks> find_specks(TriangleView model, const Progress& progress) {
       specks.of_vertex[rest.vertices[i]] = is_speck[numbers->group_of[i]];
     }
   }
-  const auto first = std::ranges::find(specks.of_vertex, true);
+  const auto first = std::find(specks.of_vertex.begin(), specks.of_vertex.end(), true);
   if (first == specks.of_vertex.end()) {
     return specks;
   }
@@ -117,8 +120,9 @@ Result<Specks> find_specks(TriangleView model, const Progress& progress) {
     specks.count += specks.of_vertex[v] && pieces[v] == v ? 1 : 0;
   }
   specks.place = model.positions[static_cast<std::size_t>(first - specks.of_vertex.begin())];
-  specks.triangles = static_cast<std::size_t>(std::ranges::count_if(
-      model.triangles, [&](const Triangle& t) { return specks.of_vertex[t[0]]; }));
+  specks.triangles = static_cast<std::size_t>(
+      std::count_if(model.triangles.begin(), model.triangles.end(),
+                    [&](const Triangle& t) { return specks.of_vertex[t[0]]; }));
   specks.enlargement =
       diagonal(model.positions) / diagonal(rest_of(model, specks.of_vertex).mesh.positions);
   return specks;

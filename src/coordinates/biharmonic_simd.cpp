@@ -254,7 +254,7 @@ private:
       framed[i] = has_weights(report, i) ? surface_.frame.to_frame(points[i]) : Vec3(Vec3::Zero());
     }
     AlignedBuffer<double> second(16 * z_.rows());
-    std::ranges::fill(second.span(), 0.0);
+    std::fill(second.span().begin(), second.span().end(), 0.0);
     if (!points.empty()) {
       HWY_DYNAMIC_DISPATCH(second_potentials)
       (surface_, std::span(framed).first(points.size()), second.data());

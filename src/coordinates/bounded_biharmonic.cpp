@@ -135,7 +135,7 @@ public:
     if (progress.cancelled()) {
       return Error::cancelled();
     }
-    if (!std::ranges::all_of(weights_, [](double w) { return std::isfinite(w); })) {
+    if (!std::all_of(weights_.begin(), weights_.end(), [](double w) { return std::isfinite(w); })) {
       return Error{
           ErrorCode::invalid_cage,
           "bounded biharmonic weights of this cage do not come out: its faces are too thin "
@@ -154,7 +154,7 @@ private:
   void put_hats() {
     std::vector<double> all(surface_.positions.size());
     for (std::size_t p = 0; p < on_cage_; ++p) {
-      std::ranges::fill(all, 0.0);
+      std::fill(all.begin(), all.end(), 0.0);
       const CagePlace& place = mesh_.on_cage[p];
       for (std::size_t i = 0; i < 3; ++i) {
         all[surface_.faces[place.face].vertices[i]] += place.hats[i];
@@ -344,7 +344,7 @@ public:
       place.shares[2] = a.cross(p).dot(c) / whole;
       place.shares[3] = a.cross(b).dot(p) / whole;
       place.shares[0] = 1 - place.shares[1] - place.shares[2] - place.shares[3];
-      if (*std::ranges::min_element(place.shares) >= -rounding) {
+      if (*std::min_element(place.shares.begin(), place.shares.end()) >= -rounding) {
         return clamped(place);
       }
     }
@@ -387,11 +387,11 @@ private:
     for (const std::array<Index, 4>& cell : mesh_->cells) {
       for (std::size_t i = 0; i < 4; ++i) {
         Triangle face = {cell[(i + 1) % 4], cell[(i + 2) % 4], cell[(i + 3) % 4]};
-        std::ranges::sort(face);
+        std::sort(face.begin(), face.end());
         faces.push_back(face);
       }
     }
-    std::ranges::sort(faces);
+    std::sort(faces.begin(), faces.end());
     for (std::size_t i = 0; i < faces.size(); ++i) {
       if (i + 1 < faces.size() && faces[i] == faces[i + 1]) {
         ++i;
@@ -559,7 +559,7 @@ double difference(const BoundedBiharmonicCoordinates& coarse,
         double most = 0;
         std::vector<double> other(vertices);
         for (std::size_t p = begin; p < end; ++p) {
-          std::ranges::fill(other, 0.0);
+          std::fill(other.begin(), other.end(), 0.0);
           coarse.weights_inside(points[p], other);
           for (std::size_t c = 0; c < vertices; ++c) {
             most = std::max(most, std::abs(other[c] - fine.weights_of(p)[c]));

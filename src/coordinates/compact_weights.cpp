@@ -23,7 +23,7 @@ std::size_t block_count(const CompactWeights& weights) {
 void round_block(std::size_t block, std::span<const float> from, CompactWeights& compact) {
   const std::size_t count = compact.columns();
   const std::span<double> steps = std::span(compact.steps).subspan(block * count, count);
-  std::ranges::fill(steps, 0.0);
+  std::fill(steps.begin(), steps.end(), 0.0);
   const std::size_t tile_size = tile_points * count;
   for (std::size_t i = 0; i < from.size(); ++i) {
     double& step = steps[i % tile_size / tile_points];

@@ -46,7 +46,7 @@ Delaunay::Delaunay() {
     cells_[static_cast<std::size_t>(c)].beside[0] = 0;
     for (unsigned i = 0; i < 4; ++i) {
       const Cell& other = cells_[static_cast<std::size_t>(c)].corners;
-      if (std::ranges::find(other, cells_[0].corners[i]) == other.end()) {
+      if (std::find(other.begin(), other.end(), cells_[0].corners[i]) == other.end()) {
         cells_[0].beside[i] = c;
       }
     }
@@ -202,7 +202,7 @@ void Delaunay::fill_hole(Index name) {
     made.push_back(index);
     if (outer >= 0) {
       std::array<std::int32_t, 4>& back = cells_[static_cast<std::size_t>(outer)].beside;
-      *std::ranges::find(back, rim.cell) = index;
+      *std::find(back.begin(), back.end(), rim.cell) = index;
     }
     for (const unsigned face : other_corners[rim.face]) {
       std::array<Index, 2> ends{};
@@ -215,7 +215,7 @@ void Delaunay::fill_hole(Index name) {
       sides_.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1]), index, face});
     }
   }
-  std::ranges::sort(sides_, [](const Side& a, const Side& b) {
+  std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
     return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.cell < b.cell;
   });
   for (std::size_t i = 0; i + 1 < sides_.size(); i += 2) { // each edge of the rim has two faces
@@ -233,7 +233,8 @@ void Delaunay::fill_hole(Index name) {
 std::vector<Delaunay::Cell> Delaunay::cells() const {
   std::vector<Cell> result;
   for (const Tetrahedron& cell : cells_) {
-    if (std::ranges::all_of(cell.corners, [](Index v) { return v >= box_corners; })) {
+    if (std::all_of(cell.corners.begin(), cell.corners.end(),
+                    [](Index v) { return v >= box_corners; })) {
       Cell corners = cell.corners;
       for (Index& v : corners) {
         v -= box_corners;

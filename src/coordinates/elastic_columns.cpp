@@ -68,8 +68,8 @@ public:
   }
 
   void move(std::span<const Vec3> cage, std::span<Vec3> moves) const override {
-    std::ranges::fill(moves, Vec3::Zero());
-    if (std::ranges::equal(cage, cage_at_rest())) {
+    std::fill(moves.begin(), moves.end(), Vec3::Zero());
+    if (std::equal(cage.begin(), cage.end(), cage_at_rest().begin(), cage_at_rest().end())) {
       return;
     }
     const Pose pose = pose_of(cage);
@@ -82,7 +82,8 @@ public:
   }
 
   [[nodiscard]] std::optional<ColumnDivisor> divisor(std::span<const Vec3> cage) const override {
-    if (!(options_.local > 0) || std::ranges::equal(cage, cage_at_rest())) {
+    if (!(options_.local > 0) ||
+        std::equal(cage.begin(), cage.end(), cage_at_rest().begin(), cage_at_rest().end())) {
       return std::nullopt;
     }
     const Pose pose = pose_of(cage);

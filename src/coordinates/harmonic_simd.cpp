@@ -350,8 +350,8 @@ class UnknownPotentials {
 public:
   UnknownPotentials(const Panels& panels, std::span<const Vec3> points, double near)
       : of_corners_(48 * panels.surface.faces.size()), of_unknowns_(16 * panels.unknowns) {
-    std::ranges::fill(of_corners_.span(), 0.0);
-    std::ranges::fill(of_unknowns_.span(), 0.0);
+    std::fill(of_corners_.span().begin(), of_corners_.span().end(), 0.0);
+    std::fill(of_unknowns_.span().begin(), of_unknowns_.span().end(), 0.0);
     HWY_DYNAMIC_DISPATCH(panel_potentials)
     (panels.surface, points, near, of_corners_.data());
     for (std::size_t c = 0; c < 3 * panels.surface.faces.size(); ++c) {
@@ -449,10 +449,11 @@ private:
       own.insert(own.end(), place.unknowns.begin(), place.unknowns.end());
       samples.push_back(place.sample);
     }
-    std::ranges::sort(own);
+    std::sort(own.begin(), own.end());
     own.erase(std::unique(own.begin(), own.end()), own.end());
     const auto row_of = [&](Index unknown) {
-      return static_cast<std::size_t>(std::ranges::lower_bound(own, unknown) - own.begin());
+      return static_cast<std::size_t>(std::lower_bound(own.begin(), own.end(), unknown) -
+                                      own.begin());
     };
     // Sums of 16 rows or fewer at a time, for all samples.
     const std::size_t strips = (own.size() + strip_columns - 1) / strip_columns;
@@ -748,7 +749,7 @@ double difference(const Coordinates& a, const Coordinates& b, std::span<const Ve
       of_tile[t] = std::max(of_tile[t], std::abs(of_a.data()[k] - of_b.data()[k]));
     }
   });
-  return tiles == 0 ? 0 : *std::ranges::max_element(of_tile);
+  return tiles == 0 ? 0 : *std::max_element(of_tile.begin(), of_tile.end());
 }
 
 constexpr std::array<const CoordinateOption*, 3> kind_options = {&quads_option, &outside_option,
@@ -813,7 +814,8 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
       return status.error();
     }
     const std::vector<double> errors = derivatives.residuals(samples);
-    if (!std::ranges::all_of(errors, [](double e) { return e < useless; })) { // or no number
+    if (!std::all_of(errors.begin(), errors.end(),
+                     [](double e) { return e < useless; })) { // or no number
       return Error{
           ErrorCode::invalid_cage,
           "harmonic coordinates of this cage do not come out: its faces are too thin or "
@@ -821,7 +823,7 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
     }
     return std::make_shared<HarmonicCoordinates>(cage, surface->frame, *green, derivatives,
                                                  options.outside,
-                                                 *std::ranges::max_element(errors));
+                                                 *std::max_element(errors.begin(), errors.end()));
   };
   Result<std::shared_ptr<HarmonicCoordinates>> coarse =
       made_at(level > 0 ? level - 1 : 0, progress.part(0, 0.1));

@@ -139,8 +139,8 @@ private:
   /// Points of a triangular lattice along the longest edge, round the middle.
   void add_face(std::size_t f) {
     const Surface::Face& face = surface_.faces[f];
-    const auto longest =
-        static_cast<std::size_t>(std::ranges::max_element(face.length) - face.length.begin());
+    const auto longest = static_cast<std::size_t>(
+        std::max_element(face.length.begin(), face.length.end()) - face.length.begin());
     const Vec3& u = face.along[longest];
     const Vec3 v = -face.outward[longest];
     const Vec3 middle = at({f, {1.0 / 3, 1.0 / 3, 1.0 / 3}});
@@ -217,7 +217,7 @@ private:
       const int round = hash == 0 ? 0 : -std::min(std::countr_zero(hash), 10);
       turns.push_back({round, along_curve(points_[i].x), static_cast<Index>(i)});
     }
-    std::ranges::sort(turns, [](const Turn& a, const Turn& b) {
+    std::sort(turns.begin(), turns.end(), [](const Turn& a, const Turn& b) {
       return std::tie(a.round, a.along, a.point) < std::tie(b.round, b.along, b.point);
     });
     inserted_.resize(points_.size());
@@ -269,7 +269,7 @@ private:
         }
       }
     }
-    std::ranges::sort(edges);
+    std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;
   }
@@ -323,7 +323,8 @@ private:
     std::vector<Edge> segments;
     for (const Edge& segment : segments_) {
       const double length = (points_[segment.first].x - points_[segment.second].x).norm();
-      if (length < 2 * least_spacing * spacing_ || std::ranges::binary_search(edges, segment)) {
+      if (length < 2 * least_spacing * spacing_ ||
+          std::binary_search(edges.begin(), edges.end(), segment)) {
         segments.push_back(segment);
         continue;
       }
@@ -376,7 +377,7 @@ private:
       for (std::size_t i = 0; i < 4; ++i) {
         corners[i] = &points_[cell[i]].x;
         for (std::size_t j = i + 1; j < 4; ++j) {
-          const auto edge = std::ranges::lower_bound(edges, edge_of(cell[i], cell[j]));
+          const auto edge = std::lower_bound(edges.begin(), edges.end(), edge_of(cell[i], cell[j]));
           if (crossed[static_cast<std::size_t>(edge - edges.begin())]) {
             return true;
           }

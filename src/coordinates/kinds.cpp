@@ -1,5 +1,6 @@
 #include <cagewright/coordinates/kinds.h>
 
+#include "core/parse.h"
 #include <cagewright/coordinates/biharmonic.h>
 #include <cagewright/coordinates/bounded_biharmonic.h>
 #include <cagewright/coordinates/green.h>
@@ -16,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 
 namespace cagewright {
@@ -57,16 +57,15 @@ std::string value_text(const CoordinateOption& option, double value) {
 
 std::optional<double> parsed(const CoordinateOption& option, std::string_view text) {
   if (!option.words.empty()) {
-    const auto word = std::ranges::find(option.words, text);
+    const auto word = std::find(option.words.begin(), option.words.end(), text);
     return word == option.words.end()
                ? std::nullopt
                : std::optional(static_cast<double>(word - option.words.begin()));
   }
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_number = error == std::errc() && end == text.data() + text.size();
-  return is_number && value >= option.least && value <= option.most ? std::optional(value)
-                                                                    : std::nullopt;
+  return parse_number(text, value) && value >= option.least && value <= option.most
+             ? std::optional(value)
+             : std::nullopt;
 }
 
 } // namespace
@@ -95,7 +94,8 @@ std::span<const CoordinateKind* const> coordinate_kinds() {
 }
 
 const CoordinateKind* find_coordinate_kind(std::string_view name) {
-  const auto found = std::ranges::find(kinds, name, &CoordinateKind::name);
+  const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                  [&](const CoordinateKind* kind) { return kind->name == name; });
   return found == kinds.end() ? nullptr : *found;
 }
 
@@ -112,7 +112,7 @@ std::vector<const CoordinateOption*> coordinate_options() {
   std::vector<const CoordinateOption*> options;
   for (const CoordinateKind* kind : kinds) {
     for (const CoordinateOption* option : kind->options) {
-      if (std::ranges::find(options, option) == options.end()) {
+      if (std::find(options.begin(), options.end(), option) == options.end()) {
         options.push_back(option);
       }
     }
@@ -181,7 +181,9 @@ std::string CoordinateSettings::name() const {
 }
 
 std::optional<std::size_t> CoordinateSettings::find(std::string_view option) const {
-  const auto found = std::ranges::find(kind_->options, option, &CoordinateOption::name);
+  const auto found =
+      std::find_if(kind_->options.begin(), kind_->options.end(),
+                   [&](const CoordinateOption* known) { return known->name == option; });
   return found == kind_->options.end()
              ? std::nullopt
              : std::optional(static_cast<std::size_t>(found - kind_->options.begin()));

@@ -129,7 +129,8 @@ template <class T> void prepare_outside(MeanValueTables<T>& tables) {
   for (std::size_t i = 0; i < 3; ++i) { // no flux but for the volume through a closed surface
     flux[i] = std::abs(flux[i]) < 1e-13L * area ? 0 : flux[i];
   }
-  std::ranges::transform(flux, tables.flux.begin(), [](Real x) { return static_cast<T>(x); });
+  std::transform(flux.begin(), flux.end(), tables.flux.begin(),
+                 [](Real x) { return static_cast<T>(x); });
   tables.least_flux = static_cast<T>(1e-11L * area * std::sqrt(largest2));
 }
 
@@ -245,7 +246,7 @@ TileReport solve_some(const MeanValueSolver::Tables& cage, std::span<const Vec3>
   if (points.size() < 16) {
     for (std::size_t c = 0; c < cage.cage_vertices; ++c) {
       const std::span<Out> all = weights.subspan(c * stride, 16);
-      std::ranges::fill(all.subspan(points.size()), Out(0));
+      std::fill(all.subspan(points.size()).begin(), all.subspan(points.size()).end(), Out(0));
     }
     const unsigned kept = (1U << points.size()) - 1;
     report.on_surface = static_cast<std::uint16_t>(report.on_surface & kept);

@@ -76,7 +76,8 @@ public:
     for (std::size_t i = 0; i < points.size(); ++i) {
       entries_.push_back({{points[i].x(), points[i].y(), points[i].z()}, shares[i], 1});
     }
-    std::ranges::stable_sort(entries_, {}, &Entry::place);
+    std::stable_sort(entries_.begin(), entries_.end(),
+                     [](const Entry& a, const Entry& b) { return a.place < b.place; });
     std::size_t kept = 0;
     for (const Entry& entry : entries_) {
       if (kept > 0 && entries_[kept - 1].place == entry.place) {
@@ -91,7 +92,9 @@ public:
 
   [[nodiscard]] std::optional<double> at(const Vec3& x) const {
     const std::array<double, 3> place = {x.x(), x.y(), x.z()};
-    const auto found = std::ranges::lower_bound(entries_, place, {}, &Entry::place);
+    const auto found = std::lower_bound(
+        entries_.begin(), entries_.end(), place,
+        [](const Entry& entry, const auto& sought) { return entry.place < sought; });
     return found != entries_.end() && found->place == place
                ? std::optional(std::clamp(found->sum / found->count, 0.0, 1.0))
                : std::nullopt;

@@ -77,8 +77,9 @@ private:
     }
     Vec3 around = Vec3::Zero();
     for (const Triangle& other : triangles_) {
-      const bool shares = std::ranges::any_of(
-          other, [&](Index v) { return std::ranges::find(corners, v) != corners.end(); });
+      const bool shares = std::any_of(other.begin(), other.end(), [&](Index v) {
+        return std::find(corners.begin(), corners.end(), v) != corners.end();
+      });
       around += shares ? area_of(positions, other) : Vec3(Vec3::Zero());
     }
     return around.norm() > 0 ? Vec3(around.normalized()) : normals_[index];

@@ -128,13 +128,13 @@ void add_product(std::size_t rows, double factor, const double* a, const double*
 StripMatrix::StripMatrix(std::size_t rows, std::size_t columns)
     : rows_(rows), strips_((columns + strip_columns - 1) / strip_columns),
       data_(rows_ * strips_ * strip_columns) {
-  std::ranges::fill(data_.span(), 0.0);
+  std::fill(data_.span().begin(), data_.span().end(), 0.0);
 }
 
 PositiveSystem::PositiveSystem(std::size_t unknowns, std::size_t sides)
     : unknowns_(unknowns), tiles_((unknowns + strip_columns - 1) / strip_columns),
       lower_(tiles_ * (tiles_ + 1) / 2 * tile_size), sides_(tiles_ * strip_columns, sides) {
-  std::ranges::fill(lower_.span(), 0.0);
+  std::fill(lower_.span().begin(), lower_.span().end(), 0.0);
 }
 
 double PositiveSystem::bytes(std::size_t unknowns) {

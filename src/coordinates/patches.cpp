@@ -127,7 +127,7 @@ Result<PatchedSurface> PatchedSurface::create(const PolygonMesh& cage) {
     Patch patch = make_patch(corners);
     patch.vertices = vertices;
     CagePatch made{patch, LeastChange(patch), {}, {}, {}, faces_of[q].size()};
-    std::ranges::copy(faces_of[q], made.triangles.begin());
+    std::copy(faces_of[q].begin(), faces_of[q].end(), made.triangles.begin());
     for (std::size_t k = 0; k < 4; ++k) {
       const auto [from, to] = std::minmax(vertices[k], vertices[(k + 1) % 4]);
       const auto [found, is_new] = rims.try_emplace({from, to}, patched.rims.size());

@@ -208,13 +208,13 @@ private:
       if (!cap.meets(blocker.cap)) {
         continue;
       }
-      const bool is_behind = std::ranges::all_of(
-          blocker.corners, [&](const Vec3& p) { return normal.dot(p) >= height; });
+      const bool is_behind = std::all_of(blocker.corners.begin(), blocker.corners.end(),
+                                         [&](const Vec3& p) { return normal.dot(p) >= height; });
       const bool is_apart =
-          std::ranges::any_of(blocker.planes,
-                              [&](const Vec3& plane) { return all_outside(plane, corners); }) ||
-          std::ranges::any_of(
-              planes, [&](const Vec3& plane) { return all_outside(plane, blocker.corners); });
+          std::any_of(blocker.planes.begin(), blocker.planes.end(),
+                      [&](const Vec3& plane) { return all_outside(plane, corners); }) ||
+          std::any_of(planes.begin(), planes.end(),
+                      [&](const Vec3& plane) { return all_outside(plane, blocker.corners); });
       if (!is_behind && !is_apart) {
         found_.push_back(&blocker);
       }

@@ -226,7 +226,7 @@ void continue_outside(const PatchedSurface& cage, const PointTerms& point, const
     places.push_back(nearest_on(patch.patch, x));
     distances.push_back(places.back().distance);
   }
-  const double reach = 1.5 * *std::ranges::min_element(distances);
+  const double reach = 1.5 * *std::min_element(distances.begin(), distances.end());
   double all = 0;
   for (double& d : distances) {
     d = d < reach ? (reach - d) * (reach - d) : 0; // from here on: shares

@@ -17,7 +17,7 @@ Mat3 rotation_of(const Eigen::JacobiSVD<Mat3>& svd, double& last_sign) {
 } // namespace
 
 Similarity best_similarity(std::span<const Vec3> rest, std::span<const Vec3> pose) {
-  if (std::ranges::equal(rest, pose) || rest.empty()) {
+  if (std::equal(rest.begin(), rest.end(), pose.begin(), pose.end()) || rest.empty()) {
     return {};
   }
   const auto count = static_cast<double>(rest.size());

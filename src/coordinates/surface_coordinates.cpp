@@ -34,8 +34,8 @@ TileReport FramedCoordinates::solve_tile(std::span<const Vec3> points, std::span
   TileReport report;
   if (!points.empty()) {
     std::array<Vec3, 16> framed;
-    std::ranges::transform(points, framed.begin(),
-                           [&](const Vec3& p) { return frame_.to_frame(p); });
+    std::transform(points.begin(), points.end(), framed.begin(),
+                   [&](const Vec3& p) { return frame_.to_frame(p); });
     report = solve_framed(std::span(framed).first(points.size()), weights.data(), stride);
   }
   for (std::size_t k = 0; points.size() < 16 && k < columns(); ++k) {

@@ -431,7 +431,7 @@ std::vector<double> weights_with_care(const Surface& surface, const Vec3& x, std
     report.outside |= bit;
   } else if (!inside(point, weights)) {
     report.undefined |= bit;
-    std::ranges::fill(weights, 0.0);
+    std::fill(weights.begin(), weights.end(), 0.0);
   }
   return weights;
 }

@@ -71,10 +71,11 @@ Result<ChosenCoordinates> choose_coordinates(const PolygonMesh& cage, std::span<
     }
     chosen.tried.push_back(*std::move(tried));
   }
-  std::ranges::stable_sort(chosen.tried, [](const TriedKind& a, const TriedKind& b) {
-    return a.refusal.empty() != b.refusal.empty() ? a.refusal.empty()
-                                                  : a.refusal.empty() && a.cost() < b.cost();
-  });
+  std::stable_sort(
+      chosen.tried.begin(), chosen.tried.end(), [](const TriedKind& a, const TriedKind& b) {
+        return a.refusal.empty() != b.refusal.empty() ? a.refusal.empty()
+                                                      : a.refusal.empty() && a.cost() < b.cost();
+      });
   const TriedKind& best = chosen.tried.front();
   if (!best.refusal.empty()) {
     return Error{ErrorCode::invalid_cage, best.refusal};

@@ -101,7 +101,7 @@ void Deformer::update() {
   if (has_normals_) {
     update_normals();
   }
-  std::ranges::fill(is_moved_, std::uint8_t(0));
+  std::fill(is_moved_.begin(), is_moved_.end(), std::uint8_t(0));
   moved_ = 0;
 }
 
@@ -116,7 +116,7 @@ void Deformer::move_model() {
   // A pose set as a whole starts from the rest, so that it does not depend on the way there.
   const bool whole = moved_ == cage_.size();
   if (whole) {
-    std::ranges::fill(applied_, Vec3::Zero());
+    std::fill(applied_.begin(), applied_.end(), Vec3::Zero());
   }
   changed_.clear();
   changes_.clear();
@@ -165,8 +165,8 @@ std::vector<float> Deformer::influence(std::span<const Index> cage_vertices) con
   std::visit([&](const auto& weights) { move_points(weights, columns, along_x, sums, sums); },
              weights_);
   std::vector<float> influence(sums.size());
-  std::ranges::transform(sums, influence.begin(),
-                         [](const Vec3& sum) { return static_cast<float>(sum.x()); });
+  std::transform(sums.begin(), sums.end(), influence.begin(),
+                 [](const Vec3& sum) { return static_cast<float>(sum.x()); });
   return influence;
 }
 

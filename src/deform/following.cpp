@@ -26,7 +26,7 @@ std::vector<Influence> influences(const ColumnRule& rule) {
   std::vector<Influence> all(rule.cage_at_rest().size());
   std::vector<double> factors(rule.columns());
   for (std::size_t v = 0; v < all.size(); ++v) {
-    std::ranges::fill(factors, 0.0);
+    std::fill(factors.begin(), factors.end(), 0.0);
     rule.add_influence(static_cast<Index>(v), factors);
     for (std::size_t k = 0; k < factors.size(); ++k) {
       if (factors[k] != 0) {
@@ -96,7 +96,7 @@ std::size_t count_in_contact(TriangleView rest, std::span<const Vec3> posed) {
   const std::vector<std::pair<Index, Index>> pairs =
       overlapping_pairs(TriangleBvh(TriangleView{posed, rest.triangles}));
   const auto share_corner = [&](const Triangle& a, const Triangle& b) {
-    return std::ranges::find_first_of(a, b) != a.end();
+    return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
   };
   const auto touch = [&](std::span<const Vec3> at, const Triangle& a, const Triangle& b) {
     const Vec3 first[3] = {at[a[0]], at[a[1]], at[a[2]]};
@@ -116,7 +116,7 @@ std::size_t count_in_contact(TriangleView rest, std::span<const Vec3> posed) {
       is_counted[pairs[i].first] = is_counted[pairs[i].second] = 1;
     }
   }
-  return static_cast<std::size_t>(std::ranges::count(is_counted, 1));
+  return static_cast<std::size_t>(std::count(is_counted.begin(), is_counted.end(), 1));
 }
 
 } // namespace
@@ -161,7 +161,7 @@ Result<UnseenShare> unseen_share(const PolygonMesh& cage, const Coordinates& coo
     for (const double share : shares) {
       result.mean += share / static_cast<double>(shares.size());
     }
-    std::ranges::sort(shares);
+    std::sort(shares.begin(), shares.end());
     result.high = shares[static_cast<std::size_t>(high_part * static_cast<double>(shares.size()))];
   }
   return result;
@@ -184,7 +184,7 @@ DeformedFigures deformed_figures(TriangleView rest, std::span<const Vec3> posed)
     }
   }
   if (!all.empty()) {
-    std::ranges::sort(all, [](const Stretched& a, const Stretched& b) {
+    std::sort(all.begin(), all.end(), [](const Stretched& a, const Stretched& b) {
       return a.stretch != b.stretch ? a.stretch < b.stretch : a.area < b.area;
     });
     figures.mean_stretch = 0;

@@ -60,7 +60,8 @@ public:
       }
     }
     std::vector<Index> common;
-    std::ranges::set_intersection(of_[a], of_[b], std::back_inserter(common));
+    std::set_intersection(of_[a].begin(), of_[a].end(), of_[b].begin(), of_[b].end(),
+                          std::back_inserter(common));
     std::erase_if(common,
                   [&](Index c) { return !other.share_edge(a, c) || !other.share_edge(b, c); });
     for (const Index c : common) {
@@ -112,7 +113,7 @@ std::vector<std::vector<Index>> face_set(const PolygonMesh& mesh, std::span<cons
     }
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
   }
-  std::ranges::sort(faces);
+  std::sort(faces.begin(), faces.end());
   return faces;
 }
 

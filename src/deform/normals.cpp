@@ -104,7 +104,7 @@ void NormalField::list_faces_of_tiles() {
   // Once to count, once to fill; a face with two corners in a tile follows itself in its list.
   std::vector<Index> last(tiles);
   for (const bool fill : {false, true}) {
-    std::ranges::fill(last, std::numeric_limits<Index>::max());
+    std::fill(last.begin(), last.end(), std::numeric_limits<Index>::max());
     std::vector<std::size_t> next(tile_begins_.begin(), tile_begins_.end() - 1);
     for (std::size_t c = 0; c < corners_.size(); ++c) {
       const std::size_t tile = corners_[c] / 16;

@@ -139,7 +139,7 @@ bool parse_npy(std::string_view text, NpyHeader& header) {
 
 std::string read_at(std::FILE* file, std::uint64_t offset, std::size_t size) {
   std::string bytes(size, '\0');
-  if (fseeko(file, static_cast<off_t>(offset), SEEK_SET) != 0) {
+  if (!seek_to(file, offset)) {
     return {};
   }
   bytes.resize(std::fread(bytes.data(), 1, size, file));
@@ -335,9 +335,8 @@ Result<NpzReader> NpzReader::open(const std::filesystem::path& path) {
     return Error{ErrorCode::cannot_open,
                  reader.label_ + ": " + (error ? error.message() : "not a regular file")};
   }
-  reader.file_size_ = std::filesystem::file_size(path, error);
-  reader.file_.reset(std::fopen(path.c_str(), "rb"));
-  if (error || !reader.file_) {
+  reader.file_ = open_regular_file(path, reader.file_size_);
+  if (!reader.file_) {
     return Error{ErrorCode::cannot_open, reader.label_ + ": " + std::strerror(errno)};
   }
   if (Status s = reader.read_directory(); !s) {
@@ -454,7 +453,7 @@ Result<NpzReader::Array> NpzReader::array(std::string_view name) {
   array.remaining_ = entry.size;
   array.compressed_ = entry.compressed;
   array.expected_crc_ = entry.crc;
-  fseeko(file_.get(), static_cast<off_t>(entry.offset + 30 + skip), SEEK_SET);
+  seek_to(file_.get(), entry.offset + 30 + skip);
 
   std::array<char, 10> magic{};
   if (Status s = array.read(std::as_writable_bytes(std::span(magic))); !s) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "io/atomic_file.h"
+#include "io/native_file.h"
 #include <cagewright/core/result.h>
 
 #include <cstdint>
@@ -16,11 +17,6 @@
 #include <vector>
 
 namespace cagewright {
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using FilePointer = std::unique_ptr<std::FILE, CloseFile>;
 
 /// What an array holds. `type` is NumPy's description: '<f8' for doubles, '<U10' for text...
 struct NpyHeader {

@@ -269,7 +269,8 @@ Result<FileBytes> read_start(const std::filesystem::path& path) {
                      (error ? ": there is no such file; check the name and the folder"
                             : ": not a regular file; give the file that bind has written")};
   }
-  const FilePointer file(std::fopen(path.c_str(), "rb"));
+  std::uint64_t size = 0;
+  const FilePointer file = open_regular_file(path, size);
   if (!file) {
     return Error{ErrorCode::cannot_open,
                  one_line(path.string()) + ": cannot be read; check its permissions"};
@@ -374,7 +375,7 @@ std::uint64_t checksum(std::span<const Vec3> points) {
 
 std::optional<WeightsFormat> weights_format_of_name(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](char c) {
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
   for (const auto& [name, format] :
@@ -564,7 +565,8 @@ Status same_topology(const PolygonMesh& rest, const PolygonMesh& other, const st
     return differs(other.face_count(), rest.face_count(), "faces");
   }
   for (std::size_t f = 0; f < rest.face_count(); ++f) {
-    if (!std::ranges::equal(rest.face(f), other.face(f))) {
+    if (!std::equal(rest.face(f).begin(), rest.face(f).end(), other.face(f).begin(),
+                    other.face(f).end())) {
       const auto listed = [](std::span<const Index> face) {
         std::string text;
         for (const Index v : face) {

@@ -1,6 +1,7 @@
 #include "deform/weights_text.h"
 
 #include "core/memory.h"
+#include "core/parse.h"
 #include "io/atomic_file.h"
 #include "io/number_text.h"
 #include "io/source.h"
@@ -8,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -268,12 +268,7 @@ private:
 /// Takes numbers between blanks and commas; false at something else or at the end.
 template <class Number> bool take(std::string_view& text, Number& value) {
   text.remove_prefix(std::min(text.find_first_not_of(" ,\t\r\n"), text.size()));
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc()) {
-    return false;
-  }
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return true;
+  return take_number(text, value);
 }
 
 /// A matrix that a file may ask for: its numbers take at least two bytes each.
@@ -428,7 +423,7 @@ private:
 
   static void fill_zero(FloatWeights& weights) {
     for (std::size_t t = 0; t < weights.tile_count(); ++t) {
-      std::ranges::fill(weights.tile(t), 0.0F);
+      std::fill(weights.tile(t).begin(), weights.tile(t).end(), 0.0F);
     }
   }
   static void set(FloatWeights& weights, std::size_t row, std::size_t column, double weight) {
@@ -451,7 +446,8 @@ private:
   [[nodiscard]] Status check_faces(const PolygonMesh& cage) const {
     for (std::size_t f = 0; f < cage.face_count(); ++f) {
       if (cage.face(f).size() < 3 ||
-          std::ranges::any_of(cage.face(f), [&](Index v) { return v >= cage.positions.size(); })) {
+          std::any_of(cage.face(f).begin(), cage.face(f).end(),
+                      [&](Index v) { return v >= cage.positions.size(); })) {
         return damaged("face " + std::to_string(f) + " of the cage has no three vertices");
       }
     }

@@ -96,8 +96,8 @@ std::optional<Foreign> find_tagged(std::string_view bytes) {
     return std::nullopt;
   }
   std::string text(bytes.substr(begin, looked_at));
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const Foreign& kind : by_tag) {
     if (text.find(kind.mark) != text.npos) {
       return kind;
@@ -140,8 +140,9 @@ std::optional<Foreign> find_shaped(std::string_view bytes) {
 }
 
 std::optional<Foreign> find_kind(std::string_view bytes) {
-  const auto known = std::ranges::find_if(
-      by_begin, [&](const Foreign& kind) { return bytes.starts_with(kind.mark); });
+  const auto known = std::find_if(by_begin.begin(), by_begin.end(), [&](const Foreign& kind) {
+    return bytes.starts_with(kind.mark);
+  });
   if (known != by_begin.end()) {
     return *known;
   }

@@ -90,7 +90,8 @@ private:
   }
 
   void lose(bool has, std::string what) {
-    if (has && std::ranges::find(attributes_.others, what) == attributes_.others.end()) {
+    if (has && std::find(attributes_.others.begin(), attributes_.others.end(), what) ==
+                   attributes_.others.end()) {
       attributes_.others.push_back(std::move(what));
     }
   }
@@ -100,9 +101,9 @@ private:
       lose(!member(document_.json(), list).empty(), list);
     }
     const Json& materials = member(document_.json(), "materials");
-    lose(
-        std::ranges::any_of(materials, [](const Json& m) { return m.size() > m.contains("name"); }),
-        "colours of materials");
+    lose(std::any_of(materials.begin(), materials.end(),
+                     [](const Json& m) { return m.size() > m.contains("name"); }),
+         "colours of materials");
     for (const GltfShown& shown : scene_.shown) {
       lose(!member(primitive_of(shown), "targets").empty(), "morph targets");
       for (const auto& [name, accessor] : member(primitive_of(shown), "attributes").items()) {

@@ -26,7 +26,7 @@ public:
     if (name.empty() || name.is_absolute() || !fs::exists(folder_ / name, ignored)) {
       return false;
     }
-    if (std::ranges::find(found_, name) == found_.end()) {
+    if (std::find(found_.begin(), found_.end(), name) == found_.end()) {
       found_.push_back(name);
     }
     return true;

@@ -11,16 +11,6 @@
 #include <string>
 
 namespace cagewright {
-namespace {
-
-// A binary STL file has no mark, but its size follows from the count of facets after the header. A
-// text that meets this by chance would have 27 GB.
-bool has_the_size_of_binary_stl(std::string_view bytes) {
-  return bytes.size() > 84 &&
-         bytes.size() == 84 + std::size_t{50} * load<std::uint32_t>(bytes.data() + 80);
-}
-
-} // namespace
 
 std::optional<MeshFormat> format_of_name(const std::filesystem::path& path) {
   std::string extension = path.extension().string();

@@ -24,9 +24,8 @@ std::optional<PlyType> type_of(std::string_view name) {
       {"double64", PlyType::float64}, {"single", PlyType::float32}, {"real", PlyType::float32},
       {"ubyte", PlyType::uint8},      {"byte", PlyType::uint8}};
   std::string lower(name.substr(0, 16));
-  std::ranges::transform(lower, lower.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  });
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   if (lower.ends_with("_t")) {
     lower.resize(lower.size() - 2); // uint8_t
   }

@@ -22,8 +22,8 @@ constexpr std::string_view mdd = ".mdd";
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
 
@@ -31,7 +31,7 @@ template <class T> void put(std::string& bytes, T value, std::endian order) {
   std::array<char, sizeof(T)> raw;
   std::memcpy(raw.data(), &value, sizeof(T));
   if (order != std::endian::native) {
-    std::ranges::reverse(raw);
+    std::reverse(raw.begin(), raw.end());
   }
   bytes.append(raw.data(), raw.size());
 }

@@ -5,6 +5,7 @@
 #include "io/readers.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -85,8 +86,8 @@ private:
     const Json& required = member(document_.json(), "extensionsRequired");
     for (std::size_t i = 0; required.is_array() && i < required.size(); ++i) {
       const std::string name = to_text(required[i]);
-      if (std::ranges::none_of(harmless,
-                               [&](std::string_view begin) { return name.starts_with(begin); })) {
+      if (std::none_of(std::begin(harmless), std::end(harmless),
+                       [&](std::string_view begin) { return name.starts_with(begin); })) {
         scene_.notes.add(
             "unknown_extension", [&] { return one_line(source_.name); },
             "needs the extension " + one_line(name) +

@@ -22,7 +22,8 @@ Result<PolygonMesh> within_reach(Result<PolygonMesh> mesh, const Source& source)
   if (!mesh) {
     return mesh;
   }
-  const auto far = std::ranges::find_if_not(mesh->positions, is_within_reach);
+  const auto far =
+      std::find_if_not(mesh->positions.begin(), mesh->positions.end(), is_within_reach);
   if (far == mesh->positions.end()) {
     return mesh;
   }

@@ -164,7 +164,7 @@ private:
       material_ = index_of(material_indices_, attributes_->material_names, cursor_.rest_of_line());
     } else if (keyword == "mtllib") {
       const std::string name(cursor_.rest_of_line());
-      if (std::ranges::find(attributes_->material_files, name) ==
+      if (std::find(attributes_->material_files.begin(), attributes_->material_files.end(), name) ==
           attributes_->material_files.end()) {
         attributes_->material_files.push_back(name);
       }
@@ -179,7 +179,8 @@ private:
   }
 
   void add_other(std::string_view what) {
-    if (std::ranges::find(attributes_->others, what) == attributes_->others.end()) {
+    if (std::find(attributes_->others.begin(), attributes_->others.end(), what) ==
+        attributes_->others.end()) {
       attributes_->others.emplace_back(what);
     }
   }
@@ -231,15 +232,15 @@ private:
       corner = corner < all.texture_points.size() ? corner : none;
     }
     const auto is_none = [](Index i) { return i == none; };
-    if (std::ranges::all_of(all.normal_of_corner, is_none)) {
+    if (std::all_of(all.normal_of_corner.begin(), all.normal_of_corner.end(), is_none)) {
       all.normals.clear();
       all.normal_of_corner.clear();
     }
-    if (std::ranges::all_of(all.texture_of_corner, is_none)) {
+    if (std::all_of(all.texture_of_corner.begin(), all.texture_of_corner.end(), is_none)) {
       all.texture_points.clear();
       all.texture_of_corner.clear();
     }
-    if (std::ranges::all_of(all.face_materials, is_none)) {
+    if (std::all_of(all.face_materials.begin(), all.face_materials.end(), is_none)) {
       all.face_materials.clear();
       all.material_names.clear();
     }

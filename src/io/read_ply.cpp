@@ -317,7 +317,8 @@ private:
     }
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
-      const bool is_color = face_color_ && std::ranges::find(*face_color_, i) != face_color_->end();
+      const bool is_color = face_color_ && std::find(face_color_->begin(), face_color_->end(), i) !=
+                                               face_color_->end();
       if (i == texture_list_) {
         continue;
       }

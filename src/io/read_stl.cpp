@@ -12,17 +12,23 @@ namespace {
 constexpr std::size_t header_size = 84; // 80 bytes of anything, then the count of facets
 constexpr std::size_t facet_size = 50;  // normal, three corners, two spare bytes
 
+// The count of programs that write while they compute, where they never come back to it. (Others
+// leave nought.)
+constexpr std::size_t unset_count = std::numeric_limits<std::uint32_t>::max();
+
+std::size_t promised_facets(std::string_view bytes) {
+  return load<std::uint32_t>(bytes.data() + 80);
+}
+
 /// How many facets there are, and what is told where the header says otherwise.
 Result<std::size_t> count_facets(const Source& source, Reading& reading) {
   const std::string_view bytes = source.bytes;
-  const std::size_t promised = load<std::uint32_t>(bytes.data() + 80);
+  const std::size_t promised = promised_facets(bytes);
   const std::size_t room = (bytes.size() - header_size) / facet_size;
   const std::size_t spare = (bytes.size() - header_size) % facet_size;
   const auto place = [&] { return source.place_at_byte(80); };
   const std::string header = "the header promises " + counted(promised, "facet");
-  // Programs that write while they compute often leave the count as it was.
-  constexpr std::size_t unset = std::numeric_limits<std::uint32_t>::max();
-  if ((promised == 0 || promised == unset) && room > 0 && spare == 0) {
+  if ((promised == 0 || promised == unset_count) && room > 0 && spare == 0) {
     reading.notes.add("facet_count", place,
                       header + ", but the file holds " + std::to_string(room) + "; all are read");
     return room;
@@ -189,9 +195,20 @@ std::string stl_keyword(std::string_view word) {
   return lower;
 }
 
+bool has_the_size_of_binary_stl(std::string_view bytes) {
+  if (bytes.size() <= header_size) {
+    return false;
+  }
+  const std::size_t promised = promised_facets(bytes);
+  const std::size_t body = bytes.size() - header_size;
+  return body == facet_size * promised || (promised == unset_count && body % facet_size == 0);
+}
+
+// Size first: the bytes of a binary file change when it is written again with other coordinates,
+// and may then look like text; its size stays.
 bool is_stl_text(const Source& source) {
   TextCursor cursor(source);
-  if (!cursor.next_word_of_file() ||
+  if (has_the_size_of_binary_stl(source.bytes) || !cursor.next_word_of_file() ||
       source.bytes.substr(0, 1024).find('\0') != std::string_view::npos) {
     return false;
   }

@@ -28,6 +28,10 @@ Result<PolygonMesh> read_stl(const Source& source, Reading& reading);
 /// Whether an STL file is text. Binary files often begin with "solid" too, so that decides nothing.
 bool is_stl_text(const Source& source);
 
+/// Whether a file is as large as a binary STL file of the count of facets that stands behind its
+/// header. A text that meets this by chance would have 7 GB or more.
+bool has_the_size_of_binary_stl(std::string_view bytes);
+
 /// A word of an STL file in lower case: programs differ.
 std::string stl_keyword(std::string_view word);
 

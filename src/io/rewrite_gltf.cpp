@@ -348,9 +348,10 @@ private:
       const auto [found, is_new] =
           known.try_emplace({shown.placement, *shown.normals, shown.tangents});
       if (is_new) {
-        const auto block = std::ranges::find_if(stored->blocks, [&](const NormalBlock& other) {
-          return other.placement == shown.placement && other.accessor == *shown.normals;
-        });
+        const auto block = std::find_if(
+            stored->blocks.begin(), stored->blocks.end(), [&](const NormalBlock& other) {
+              return other.placement == shown.placement && other.accessor == *shown.normals;
+            });
         Result<Turned> turned =
             turned_normals(document_, scene, *block, stored->file, normals, shown.tangents);
         if (!turned) {
@@ -410,7 +411,7 @@ private:
       }
       for (std::size_t a = 0; a < attribute_names.size(); ++a) {
         const Json& own = member(member(primitives[p], "attributes"), attribute_names[a]);
-        const auto leader = std::ranges::find_if(shown, [&](const auto& other) {
+        const auto leader = std::find_if(shown.begin(), shown.end(), [&](const auto& other) {
           return !own.is_null() && other.second[a] &&
                  member(member(primitives[other.first], "attributes"), attribute_names[a]) == own;
         });
@@ -820,7 +821,8 @@ Status check_result(GltfDocument& document, const GltfScene& before,
                                        "changed in place; export the model again, or write OBJ",
                                    ErrorCode::unsupported);
   };
-  if (!std::ranges::equal(scene->mesh.corners(), before.mesh.corners()) ||
+  if (!std::equal(scene->mesh.corners().begin(), scene->mesh.corners().end(),
+                  before.mesh.corners().begin(), before.mesh.corners().end()) ||
       scene->mesh.positions.size() != positions.size()) {
     return spoiled(before.placements[0].positions);
   }

@@ -418,7 +418,7 @@ Result<FileNormals> normals_in(const Source& source, MeshFormat format,
       format == MeshFormat::obj ? obj_normals_in(source) : vertex_normals_in(source, format);
   if (result) {
     const auto is_wrong = [](const Vec3& normal) { return !normal.allFinite(); };
-    std::ranges::replace_if(result->normals, is_wrong, Vec3(Vec3::Zero()));
+    std::replace_if(result->normals.begin(), result->normals.end(), is_wrong, Vec3(Vec3::Zero()));
   }
   return result;
 }

@@ -178,7 +178,7 @@ private:
   }
 
   void follow(std::size_t node) {
-    if (std::ranges::find(followed_, node) == followed_.end()) {
+    if (std::find(followed_.begin(), followed_.end(), node) == followed_.end()) {
       followed_.push_back(node);
     }
   }
@@ -198,7 +198,7 @@ private:
     for (const auto& [node, share] : shares) {
       sorted.emplace_back(-share, node);
     }
-    std::ranges::sort(sorted);
+    std::sort(sorted.begin(), sorted.end());
     sorted.resize(std::min(sorted.size(), most_joints));
     Shares result;
     for (const auto& [share, node] : sorted) {

@@ -121,7 +121,7 @@ std::string not_a_number(std::string_view word) {
            " is not a finite number: numbers are separated by blanks; replace ';' "
            "by ' ' in the file";
   }
-  const auto commas = std::ranges::count(word, ',');
+  const auto commas = std::count(word.begin(), word.end(), ',');
   const bool is_numeric = word.find_first_not_of("0123456789+-.,eEdD") == word.npos &&
                           word.find_first_of("0123456789") != word.npos;
   if (commas == 0 || !is_numeric) {

@@ -222,7 +222,7 @@ private:
     if (text[mark] == '#') {
       const std::string_view what = text.substr(mark + 1);
       const bool is_infinite = what.starts_with("INF");
-      const bool is_mark = !what.empty() && std::ranges::all_of(what, [](char c) {
+      const bool is_mark = !what.empty() && std::all_of(what.begin(), what.end(), [](char c) {
         return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
       });
       if (text[mark - 1] != '.' || !is_mark) {

@@ -44,7 +44,7 @@ Status check(const MovingMesh& mesh, const std::filesystem::path& path) {
                       std::to_string(mesh.shapes[k].size()) + " vertices, the mesh has " +
                       std::to_string(count));
     }
-    if (!std::ranges::all_of(mesh.shapes[k], fits_floats)) {
+    if (!std::all_of(mesh.shapes[k].begin(), mesh.shapes[k].end(), fits_floats)) {
       return Error{ErrorCode::cannot_write,
                    path.string() + ": a position of shape " + std::to_string(k) +
                        " is not finite, or too large for the file's numbers"};
@@ -78,8 +78,8 @@ std::vector<Vec3> MovingMesh::at(std::size_t frame) const {
 Status write_animation(const MovingMesh& mesh, const std::filesystem::path& path,
                        const Progress& progress) {
   std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension != ".glb" && !is_point_cache(path)) {
     return Error{ErrorCode::unsupported,
                  path.string() + ": movements are written as .glb, .pc2 or .mdd"};

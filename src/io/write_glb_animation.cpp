@@ -60,7 +60,8 @@ SplitVertices split_vertices(const PolygonMesh& mesh, const MeshAttributes& attr
       Index texture = MeshAttributes::none;
       if (textured) {
         const auto face = mesh.face(f);
-        const auto corner = static_cast<std::size_t>(std::ranges::find(face, v) - face.begin());
+        const auto corner =
+            static_cast<std::size_t>(std::find(face.begin(), face.end(), v) - face.begin());
         texture = attributes.texture_of_corner[first_corner[f] + corner];
       }
       const auto [place, is_new] =
@@ -121,9 +122,9 @@ public:
     const int accessor = add(values.data(), values.size() * sizeof(float), values.size(), "SCALAR",
                              component_float, 0);
     if (with_bounds) {
-      const auto [low, high] = std::ranges::minmax(values);
-      json["accessors"].back()["min"] = {low};
-      json["accessors"].back()["max"] = {high};
+      const auto [low, high] = std::minmax_element(values.begin(), values.end());
+      json["accessors"].back()["min"] = {*low};
+      json["accessors"].back()["max"] = {*high};
     }
     return accessor;
   }

@@ -60,9 +60,10 @@ public:
   }
 
   Result<std::string> write(bool as_json) {
-    const bool fits = std::ranges::all_of(mesh_.positions, [&](const Vec3& p) {
-      return (p - shift_).cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max();
-    });
+    const bool fits =
+        std::all_of(mesh_.positions.begin(), mesh_.positions.end(), [&](const Vec3& p) {
+          return (p - shift_).cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max();
+        });
     if (!fits) {
       return Error{ErrorCode::cannot_write, "the coordinates are too large for the floats of glTF; "
                                             "write .obj, .ply, .off or .stl"};
@@ -194,7 +195,8 @@ private:
   [[nodiscard]] std::size_t corner_of(Index face, Index vertex) const {
     const std::span<const Index> corners = mesh_.face(face);
     return first_corner_[face] +
-           static_cast<std::size_t>(std::ranges::find(corners, vertex) - corners.begin());
+           static_cast<std::size_t>(std::find(corners.begin(), corners.end(), vertex) -
+                                    corners.begin());
   }
 
   std::array<float, 2> texture_at(std::size_t corner) {
@@ -270,8 +272,9 @@ private:
 
   /// In bytes where that loses nothing.
   std::size_t add_colors(const std::vector<float>& values) {
-    const bool are_bytes = std::ranges::all_of(
-        values, [](float channel) { return std::round(channel * 255) / 255 == channel; });
+    const bool are_bytes = std::all_of(values.begin(), values.end(), [](float channel) {
+      return std::round(channel * 255) / 255 == channel;
+    });
     if (!are_bytes) {
       return add_accessor(values, 4, "VEC4");
     }
@@ -382,8 +385,8 @@ private:
 
 bool is_gltf_json_name(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension == ".gltf";
 }
 

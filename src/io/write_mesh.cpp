@@ -332,9 +332,8 @@ private:
 
   // Wider integers are exact as doubles, up to 2^53.
   static bool is_int(const NamedValues& values) {
-    return values.is_integer && std::ranges::all_of(values.values, [](double value) {
-             return std::abs(value) < 0x1p31;
-           });
+    return values.is_integer && std::all_of(values.values.begin(), values.values.end(),
+                                            [](double value) { return std::abs(value) < 0x1p31; });
   }
 
   void write_vertex(std::size_t v) {
@@ -435,7 +434,8 @@ std::vector<std::string> lost_in(MeshFormat format, const PolygonMesh& mesh,
   const bool off = format == MeshFormat::off;
   const bool gltf = format == MeshFormat::gltf;
   const VertexDress dress = ply || off ? vertex_dress(mesh, attributes) : VertexDress();
-  const bool alpha = std::ranges::any_of(mesh.colors, [](const auto& c) { return c[3] != 1; });
+  const bool alpha =
+      std::any_of(mesh.colors.begin(), mesh.colors.end(), [](const auto& c) { return c[3] != 1; });
   std::vector<std::string> lost;
   const auto lose = [&](bool has, bool kept, const std::string& what) {
     if (has && !kept) {

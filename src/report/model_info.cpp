@@ -44,8 +44,8 @@ PolygonMesh with_simple_faces(const PolygonMesh& mesh) {
   std::vector<Index> sorted;
   const auto is_simple = [&](std::size_t f) {
     sorted.assign(mesh.face(f).begin(), mesh.face(f).end());
-    std::ranges::sort(sorted);
-    return sorted.size() == 3 || std::ranges::adjacent_find(sorted) == sorted.end();
+    std::sort(sorted.begin(), sorted.end());
+    return sorted.size() == 3 || std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
   };
   const Triangulation cut = triangulate(mesh);
   PolygonMesh simple;

@@ -48,7 +48,7 @@ std::vector<Index> limb_tips(TriangleView surface, const SurfaceDistances& dista
   }
   std::vector<Index> order(count);
   std::iota(order.begin(), order.end(), Index{0});
-  std::ranges::sort(order, [&](Index a, Index b) {
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
     return height[a] != height[b] ? height[a] > height[b] : a < b;
   });
   // As the water falls islands appear, and the lower of two that become one is gone.
@@ -86,7 +86,7 @@ std::vector<Index> limb_tips(TriangleView surface, const SurfaceDistances& dista
   const double spread = height[order.front()] - height[order.back()];
   tips.push_back({spread, order.front()});
   std::erase_if(tips, [&](const Tip& tip) { return !(tip.stands_out >= standing_out * spread); });
-  std::ranges::sort(tips, [](const Tip& a, const Tip& b) {
+  std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
     return a.stands_out != b.stands_out ? a.stands_out > b.stands_out : a.vertex < b.vertex;
   });
   std::vector<Index> found;

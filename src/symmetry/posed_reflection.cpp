@@ -328,7 +328,9 @@ std::optional<PosedReflection> find_posed_reflection(const TriangleMesh& surface
   if (progress.cancelled() || maps.empty()) {
     return std::nullopt;
   }
-  return std::ranges::min(maps, {}, doubt);
+  return *std::min_element(
+      maps.begin(), maps.end(),
+      [](const PosedReflection& a, const PosedReflection& b) { return doubt(a) < doubt(b); });
 }
 
 } // namespace cagewright

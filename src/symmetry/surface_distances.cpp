@@ -47,7 +47,7 @@ std::vector<std::vector<Index>> triangles_at_vertices(TriangleView surface) {
 
 void march(TriangleView surface, const std::vector<std::vector<Index>>& triangles_at, Index source,
            std::span<double> distances) {
-  std::ranges::fill(distances, far);
+  std::fill(distances.begin(), distances.end(), far);
   std::vector<char> is_done(distances.size(), 0);
   using Front = std::pair<double, Index>;
   std::priority_queue<Front, std::vector<Front>, std::greater<>> front;

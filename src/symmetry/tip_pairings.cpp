@@ -115,14 +115,15 @@ std::vector<TipPairing> tip_pairings(std::span<const Index> tips, const SurfaceD
   }
   std::vector<TipPairing> found = Search(tips, distances).run();
   std::erase_if(found, [](const TipPairing& pairing) { return !swaps_some(pairing); });
-  std::ranges::stable_sort(found, {}, &TipPairing::cost);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const TipPairing& a, const TipPairing& b) { return a.cost < b.cost; });
   std::vector<TipPairing> best;
   for (const TipPairing& pairing : found) {
     if (best.size() == most) {
       break;
     }
-    if (std::ranges::none_of(best,
-                             [&](const TipPairing& other) { return is_part_of(pairing, other); })) {
+    if (std::none_of(best.begin(), best.end(),
+                     [&](const TipPairing& other) { return is_part_of(pairing, other); })) {
       best.push_back(pairing);
     }
   }

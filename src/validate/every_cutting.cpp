@@ -47,7 +47,7 @@ public:
 
 private:
   static Triangle sorted(Triangle t) {
-    std::ranges::sort(t);
+    std::sort(t.begin(), t.end());
     return t;
   }
 

@@ -414,7 +414,8 @@ SpaceBetween::Count SpaceBetween::behind_of(const std::array<Vec3, 3>& t) const 
           t[0].x() -
           (normal.y() * (p.y() - t[0].y()) + normal.z() * (p.z() - t[0].z())) / normal.x();
       const std::span<const double> row_places = std::span(places_).subspan(begin, end - begin);
-      const auto before = std::ranges::lower_bound(row_places, x) - row_places.begin();
+      const auto before =
+          std::lower_bound(row_places.begin(), row_places.end(), x) - row_places.begin();
       const long narrow_ones =
           narrow_before_[begin + static_cast<std::size_t>(before)] - narrow_before_[begin];
       sum.all += left ? before : -before;

@@ -1,3 +1,4 @@
+#include <cagewright/io/mesh_format.h>
 #include <cagewright/io/read_mesh.h>
 
 #include "io/files.h"
@@ -39,6 +40,19 @@ TEST(ReadStl, IsNotMisledByABinaryFileThatBeginsWithSolid) {
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_EQ(mesh->face_count(), 1U);
   }
+}
+
+// Without a zero byte among them the bytes of a binary file look like text; its size tells it apart, and
+// stays what it is when the file is written again with other coordinates.
+TEST(ReadStl, KnowsABinaryFileByItsSize) {
+  constexpr std::uint32_t unset = 0xffffffff;
+  const float f = 1.2345678F; // no byte of it is zero
+  std::string bytes = "solid" + std::string(75, ' ') + binary(unset);
+  bytes += binary(f, f, f, f, f, f, 2 * f, f, f, f, 2 * f, f) + binary(std::uint16_t{0x2020});
+  ASSERT_EQ(bytes.find('\0'), std::string::npos);
+  EXPECT_EQ(message_of(bytes), "read");
+  EXPECT_EQ(test::read(bytes, MeshFormat::stl)->positions[1].x(), 2 * f);
+  EXPECT_EQ(format_of_content(bytes), MeshFormat::stl);
 }
 
 TEST(ReadStl, AllowsBytesAfterTheLastFacet) {

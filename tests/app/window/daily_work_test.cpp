@@ -409,25 +409,10 @@ TEST_F(DailyWork, RecoversAProjectUnderItsOwnName) {
   EXPECT_TRUE(wait_until([this] { return !window->isWindowModified(); }));
 }
 
-TEST_F(DailyWork, FindsAnyCommandByAPartOfItsName) {
-  open_model();
-  press_at_focus(Qt::Key_F3);
-  QDialog* search = nullptr;
-  ASSERT_TRUE(wait_until([&] {
-    search = window->findChild<QDialog*>("command_search");
-    return search != nullptr && search->isVisible();
-  }));
-  auto* text = search->findChild<QLineEdit*>("command_text");
-  QTest::keyClicks(text, "dark");
-  QTest::keyClick(text, Qt::Key_Return);
-  EXPECT_LT(window->palette().color(QPalette::Window).lightness(), 100);
-  ASSERT_TRUE(wait_until([&] { return window->findChild<QDialog*>("command_search") == nullptr; }));
-  trigger("dark");
-}
-
-TEST_F(DailyWork, FindsTheSwitchesOfTheLayersToo) {
-  open_model();
-  const auto run = [this](const char* words) {
+/// F3, words, Enter.
+class CommandSearch : public DailyWork {
+protected:
+  void run(const char* words) {
     press_at_focus(Qt::Key_F3);
     QDialog* search = nullptr;
     ASSERT_TRUE(wait_until([&] {
@@ -439,7 +424,18 @@ TEST_F(DailyWork, FindsTheSwitchesOfTheLayersToo) {
     QTest::keyClick(text, Qt::Key_Return);
     ASSERT_TRUE(
         wait_until([&] { return window->findChild<QDialog*>("command_search") == nullptr; }));
-  };
+  }
+};
+
+TEST_F(CommandSearch, FindsAnyCommandByAPartOfItsName) {
+  open_model();
+  run("dark");
+  EXPECT_LT(window->palette().color(QPalette::Window).lightness(), 100);
+  trigger("dark");
+}
+
+TEST_F(CommandSearch, FindsTheSwitchesOfTheLayersToo) {
+  open_model();
   const bool before = document().layers().wireframe;
   run("wireframe");
   EXPECT_NE(document().layers().wireframe, before);
