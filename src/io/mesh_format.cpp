@@ -1,6 +1,5 @@
 #include <cagewright/io/mesh_format.h>
 
-#include "io/binary.h"
 #include "io/off_header.h"
 #include "io/ply_header.h"
 #include "io/readers.h"

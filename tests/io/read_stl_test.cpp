@@ -42,8 +42,8 @@ TEST(ReadStl, IsNotMisledByABinaryFileThatBeginsWithSolid) {
   }
 }
 
-// Without a zero byte among them the bytes of a binary file look like text; its size tells it apart, and
-// stays what it is when the file is written again with other coordinates.
+// Without a zero byte among them the bytes of a binary file look like text; its size tells it
+// apart, and stays what it is when the file is written again with other coordinates.
 TEST(ReadStl, KnowsABinaryFileByItsSize) {
   constexpr std::uint32_t unset = 0xffffffff;
   const float f = 1.2345678F; // no byte of it is zero
