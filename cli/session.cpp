@@ -20,11 +20,14 @@ Error as_told(const Error& error) {
       !session_at_hand->out_of_time) {
     return error;
   }
-  return {ErrorCode::cancelled,
-          fmt::format("the time limit of {} is reached, {} was written; allow more with "
-                      "--time-limit, or ask for less (fewer vertices, a lower resolution)",
-                      seconds_as_text(session_at_hand->limits.seconds),
-                      has_written_files() ? "not all" : "nothing")};
+  return {
+      ErrorCode::cancelled,
+      fmt::format("the time limit of {} is reached, {}; allow more with --time-limit, or ask for "
+                  "less (fewer vertices, a lower resolution)",
+                  seconds_as_text(session_at_hand->limits.seconds),
+                  has_written_files() ? "perhaps before all was written (each file that is "
+                                        "there is whole)"
+                                      : "nothing was written")};
 }
 
 } // namespace

@@ -18,13 +18,6 @@ inline int vertices_allowed(const GenerateOptions& options) {
   return vertices > 0 ? vertices : options.faces > 0 ? options.faces / 2 + 2 : 0;
 }
 
-/// What is said for a reason; null: nothing.
-inline const Remark* find(const GeneratedCage& cage, Reason reason) {
-  const auto at = std::find_if(cage.remarks.begin(), cage.remarks.end(),
-                               [&](const Remark& remark) { return remark.reason == reason; });
-  return at == cage.remarks.end() ? nullptr : &*at;
-}
-
 inline void drop(GeneratedCage& cage, Reason reason) {
   std::erase_if(cage.remarks, [&](const Remark& remark) { return remark.reason == reason; });
 }
@@ -37,8 +30,8 @@ inline void add(GeneratedCage& cage, Remark remark) {
 
 /// Whether the budget, and the gap if one was asked for, were kept.
 inline bool is_within_budget(const GeneratedCage& cage) {
-  return find(cage, Reason::budget_not_reached) == nullptr &&
-         find(cage, Reason::gap_not_kept) == nullptr;
+  return cage.find(Reason::budget_not_reached) == nullptr &&
+         cage.find(Reason::gap_not_kept) == nullptr;
 }
 
 } // namespace cagewright

@@ -314,6 +314,12 @@ bool GeneratedCage::is_as_asked() const {
                       [](const Remark& remark) { return remark.is_shortfall; });
 }
 
+const Remark* GeneratedCage::find(Reason reason) const {
+  const auto at = std::find_if(remarks.begin(), remarks.end(),
+                               [&](const Remark& remark) { return remark.reason == reason; });
+  return at == remarks.end() ? nullptr : &*at;
+}
+
 Result<GeneratedCage> generate(TriangleView model, const GenerateOptions& options,
                                const Progress& progress) {
   if (const Status good = check(model, options); !good) {

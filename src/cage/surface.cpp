@@ -202,8 +202,7 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
 /// filled to keep to the budget, finer voxels would only bring them back.
 bool may_finer_voxels_help(const Surface& made) {
   return made.cage.method == Method::envelope && is_within_budget(made.cage) &&
-         made.cage.genus >= made.known &&
-         (made.webbing >= webbed || made.cage.genus > made.known);
+         made.cage.genus >= made.known && (made.webbing >= webbed || made.cage.genus > made.known);
 }
 
 /// Makes one surface after another, and keeps the best.
@@ -245,7 +244,7 @@ public:
     if (best().cage.mirror) {
       return add(make_on(half(), options_, how, progress));
     }
-    const Remark* why_not = find(best().cage, Reason::not_mirrored);
+    const Remark* why_not = best().cage.find(Reason::not_mirrored);
     return make_whole(how, why_not == nullptr ? std::string() : why_not->message, progress);
   }
 

@@ -275,7 +275,8 @@ private:
   bool draw_in(const Tip& tip) {
     std::vector<Index> movable = cage_.mesh.neighbors(tip.vertex);
     movable.push_back(tip.vertex);
-    for (const double weight : {0.3, 3.0, 30.0}) {
+    constexpr double weights[] = {0.3, 3, 30}; // ten times as much until it is near enough
+    for (const double weight : weights) {
       objective_.weigh_tips(weight);
       relax(cage_, guard_, objective_, {.steps = 6, .movable = movable});
       if (distance_of(tip.vertex) <= shape_limits::far_tip * objective_.diagonal()) {

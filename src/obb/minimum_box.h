@@ -27,8 +27,8 @@ struct MinimumBoxOptions {
 /// on a small core of the points, to which the extreme ones of each box so found are added until
 /// the core's box is that of all points. No hull in 3D is made. The same points give the same box.
 ///
-/// Cost: some ten passes over the points (40 for each start where they lie on a sphere), and 0.03 to
-/// 0.07 ms for each start: up to 1 ms for 2,000 points with the defaults.
+/// Cost: some ten passes over the points (40 for each start where they lie on a sphere), and 0.03
+/// to 0.07 ms for each start: up to 1 ms for 2,000 points with the defaults.
 OrientedBox minimum_box(std::span<const Vec3> points, const MinimumBoxOptions& options = {});
 
 } // namespace cagewright

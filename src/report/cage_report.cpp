@@ -141,9 +141,8 @@ nlohmann::json to_json(const BoxDecomposition& boxes, const std::vector<int>& co
 namespace {
 
 std::string message_of(const GeneratedCage& made, Reason reason) {
-  const auto found = std::find_if(made.remarks.begin(), made.remarks.end(),
-                                  [&](const Remark& remark) { return remark.reason == reason; });
-  return found == made.remarks.end() ? "" : found->message;
+  const Remark* const found = made.find(reason);
+  return found == nullptr ? "" : found->message;
 }
 
 nlohmann::json symmetry_json(const GeneratedCage& made) {

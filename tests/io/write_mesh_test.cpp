@@ -17,7 +17,8 @@ namespace {
 
 using test::TemporaryFolder;
 
-// Every kind of double that is read: both zeros, subnormals, the ends of the range, and random bits.
+// Every kind of double that is read: both zeros, subnormals, the ends of the range, and random
+// bits.
 PolygonMesh make_awkward_mesh() {
   PolygonMesh mesh;
   using limits = std::numeric_limits<double>;

@@ -94,6 +94,9 @@ struct GeneratedCage {
 
   /// Whether all that was asked for holds.
   [[nodiscard]] bool is_as_asked() const;
+
+  /// What is said for a reason; null: nothing.
+  [[nodiscard]] const Remark* find(Reason reason) const;
 };
 
 } // namespace cagewright
