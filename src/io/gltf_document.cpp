@@ -288,7 +288,8 @@ std::optional<std::size_t> to_size(const Json& value) {
     return std::nullopt;
   }
   const auto number = value.get<double>();
-  if (!(number >= 0 && number <= 0x1p53) || number != std::floor(number)) {
+  constexpr double largest = sizeof(std::size_t) > 4 ? 0x1p53 : 0x1p32 - 1;
+  if (!(number >= 0 && number <= largest) || number != std::floor(number)) {
     return std::nullopt;
   }
   return static_cast<std::size_t>(number);

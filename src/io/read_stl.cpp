@@ -199,8 +199,8 @@ bool has_the_size_of_binary_stl(std::string_view bytes) {
   if (bytes.size() <= header_size) {
     return false;
   }
-  const std::size_t promised = promised_facets(bytes);
-  const std::size_t body = bytes.size() - header_size;
+  const std::uint64_t promised = promised_facets(bytes); // times 50 more than 32 bits hold
+  const std::uint64_t body = bytes.size() - header_size;
   return body == facet_size * promised || (promised == unset_count && body % facet_size == 0);
 }
 
