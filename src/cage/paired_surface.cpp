@@ -27,7 +27,6 @@ namespace {
 constexpr int guide_vertices = 1000;
 
 // Shares of the time.
-constexpr double guided = 0.15;
 constexpr double reflected = 0.3;
 constexpr double caged = 0.8;
 
