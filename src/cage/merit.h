@@ -33,6 +33,9 @@ double dearer_by(double webbing, int genus, int known);
 /// The least webbing that is worth another try.
 inline constexpr double webbed = 0.01;
 
+/// That which is worth more than one.
+inline constexpr double plainly_webbed = 0.05;
+
 /// Whether a cage is as it should be. More than enough of one thing does not make up for another.
 struct Merit {
   bool reached = false; ///< the budget, and the gap if one was asked for

@@ -49,12 +49,18 @@ std::vector<StartTry> starts_of_fewer_handles(const GenerateOptions& options) {
   return starts;
 }
 
-StartTry start_of_finer_voxels(const GenerateOptions& options, int resolution) {
-  constexpr double finer = 1.75;
-  StartTry start = first_start(options);
-  start.envelope.resolution = static_cast<int>(std::lround(finer * resolution));
-  start.envelope.fill = narrow_handle;
-  return start;
+std::vector<StartTry> starts_of_finer_voxels(const GenerateOptions& options, int resolution) {
+  struct Finer {
+    double times;
+    int least; // the gaps between limbs do not grow with the budget
+  };
+  std::vector<StartTry> starts;
+  for (const auto& [times, least] : {Finer{1.75, 0}, Finer{2.3, 96}, Finer{3, 128}}) {
+    StartTry& start = starts.emplace_back(first_start(options));
+    start.envelope.resolution = std::max(static_cast<int>(std::lround(times * resolution)), least);
+    start.envelope.fill = narrow_handle;
+  }
+  return starts;
 }
 
 Result<Start> make_start(const Ground& ground, const GenerateOptions& options, const StartTry& how,

@@ -64,10 +64,11 @@ bool is_open(const GenerateOptions& options, const StartTry& how);
 /// than the one before, and is of use for nothing else.
 std::vector<StartTry> starts_of_fewer_handles(const GenerateOptions& options);
 
-/// That which is tried if limbs that are apart came out joined: voxels of an envelope so coarse
-/// that they join them leave a web that nothing opens again. Finer than an envelope of a
-/// resolution.
-StartTry start_of_finer_voxels(const GenerateOptions& options, int resolution);
+/// Those that are tried, one after another, as long as limbs that are apart come out joined: voxels
+/// of an envelope so coarse that they join them leave a web that nothing opens again. Finer than
+/// an envelope of a resolution; what becomes of one of few vertices is partly luck, so the next
+/// may free what the one before did not.
+std::vector<StartTry> starts_of_finer_voxels(const GenerateOptions& options, int resolution);
 
 /// Makes a start. Where boxes give none, an envelope is taken, and `why_not_boxes` says so.
 /// Errors: those of envelope() and make_box_cage().

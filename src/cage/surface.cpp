@@ -200,9 +200,10 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
 
 /// Whether limbs are joined that finer voxels may set free. Where handles of the model had to be
 /// filled to keep to the budget, finer voxels would only bring them back.
-bool may_finer_voxels_help(const Surface& made) {
+bool may_finer_voxels_help(const Surface& made, double least_webbing) {
   return made.cage.method == Method::envelope && is_within_budget(made.cage) &&
-         made.cage.genus >= made.known && (made.webbing >= webbed || made.cage.genus > made.known);
+         made.cage.genus >= made.known &&
+         (made.webbing >= least_webbing || made.cage.genus > made.known);
 }
 
 /// Makes one surface after another, and keeps the best.
@@ -323,14 +324,17 @@ Result<GeneratedCage> make_surface(TriangleView model, const GenerateOptions& op
     return tries.taken();
   }
   double done = usual;
-  if (may_finer_voxels_help(tries.best()) && tries.may_go_on()) {
+  double least_webbing = webbed;
+  for (const StartTry& finer : starts_of_finer_voxels(options, tries.best().cage.resolution)) {
+    if (!may_finer_voxels_help(tries.best(), least_webbing) || !tries.may_go_on()) {
+      break;
+    }
     const double then = (done + 1) / 2;
-    const int resolution = tries.best().cage.resolution;
-    if (!tries.make_beside_best(start_of_finer_voxels(options, resolution),
-                                progress.part(done, then))) {
+    if (!tries.make_beside_best(finer, progress.part(done, then))) {
       return tries.taken();
     }
     done = then;
+    least_webbing = plainly_webbed;
   }
   for (const StartTry& simpler : starts_of_fewer_handles(options)) {
     const double then = (done + 1) / 2;
