@@ -330,6 +330,7 @@ void MainWindow::connect_session() {
   connect(&document, &Document::timeLineChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::pinsChanged, this, &MainWindow::update_actions);
   connect(&document, &Document::densityChanged, this, &MainWindow::update_actions);
+  connect(&document, &Document::mixChanged, this, &MainWindow::update_actions);
   // What was refused is past as soon as something else is shown.
   connect(&document, &Document::modelChanged, notice_, &QWidget::hide);
   connect(&document, &Document::cageChanged, notice_, &QWidget::hide);

@@ -206,6 +206,15 @@ void MainWindow::make_file_menu() {
                           tr("NumPy archives (*.npz)"),
                           [this](const auto& path) { session_.export_weights(path); });
           });
+  QAction* mix =
+      add(more, "export_mix", tr("Mi&x Weights..."), {},
+          tr("What is painted for another kind of coordinates: for cagewright bind --mix-weights"),
+          [this] {
+            choose_export(tr("Export Mix Weights"), suggested("-mix", ".txt"),
+                          tr("Numbers (*.txt)"),
+                          [this](const auto& path) { session_.export_mix(path); });
+          });
+  needs_.push_back({mix, [this] { return session_.document().state().mix != nullptr; }});
   add(more, "export_image", tr("&Image of the View..."), {}, tr("A picture of what is shown"),
       [this] { export_image(); });
   menu->addSeparator();
@@ -432,6 +441,10 @@ void MainWindow::make_cage_menu() {
       {add(menu, "clear_density", tr("Clear Painted D&ensity"), {},
            tr("Takes away what was painted on the model"), [this] { viewport_->clear_density(); }),
        [this] { return session_.document().state().density != nullptr; }});
+  needs_.push_back({add(menu, "clear_mix", tr("Clear Painted Mi&x"), {},
+                        tr("The whole model follows by the first kind of coordinates"),
+                        [this] { viewport_->clear_mix(); }),
+                    [this] { return session_.document().state().mix != nullptr; }});
   needs_.push_back({bind, [this, free] {
                       const Document& d = session_.document();
                       return free() && d.has_model() && d.has_cage() && d.mode() == Mode::refine;

@@ -59,10 +59,6 @@ bool fits(const std::vector<Index>& faces, const Model& model) {
   return !faces.empty() && faces.back() < model.mesh.face_count();
 }
 
-bool same_coordinates(const CoordinateSettings& a, const CoordinateSettings& b) {
-  return &a.kind() == &b.kind() && a.text() == b.text();
-}
-
 QString what_was_written(const std::vector<fs::path>& files) {
   return files.size() == 1 ? QObject::tr("Wrote %1").arg(name_of(files.front()))
          : files.size() == 2
@@ -70,6 +66,21 @@ QString what_was_written(const std::vector<fs::path>& files) {
              : QObject::tr("Wrote %L1 files, %2 to %3")
                    .arg(files.size())
                    .arg(name_of(files.front()), name_of(files.back()));
+}
+
+/// Null where it is of another model.
+SharedShares fitting(const SharedShares& painted, const Model& model) {
+  return painted && painted->size() == model.mesh.positions.size() ? painted : nullptr;
+}
+
+/// Of more vertices, which have nothing.
+SharedDensity with_more(const SharedDensity& painted, std::size_t count) {
+  if (!painted) {
+    return nullptr;
+  }
+  std::vector<float> more = *painted;
+  more.resize(count, 0.0F);
+  return std::make_shared<const std::vector<float>>(std::move(more));
 }
 
 SharedPositions shared(std::span<const Vec3> positions) {
@@ -106,11 +117,13 @@ Session::Session(QObject* parent)
       Waiting next = *std::exchange(waiting_, std::nullopt);
       start(next.title, std::move(next.work), next.kind);
     } else {
+      take_refused_paint_back();
       show_bound_kind();
       update_beside();
     }
   });
   connect(&document_, &Document::modeChanged, this, &Session::show_bound_kind);
+  connect(&document_, &Document::mixChanged, this, &Session::follow_paint);
   connect(&document_, &Document::densityChanged, this, [this] {
     // What was painted is meant to be used.
     const bool painted = document_.state().density != nullptr;
@@ -127,10 +140,15 @@ Session::Session(QObject* parent)
 Session::~Session() = default;
 
 void Session::set_settings(const GenerateSettings& settings) {
+  const bool mixes_more = !settings.mixed.isEmpty() && settings.mixed != settings_.mixed;
   settings_ = settings;
   Q_EMIT settingsChanged();
+  if (mixes_more && chosen().second && document_.has_model() && !document_.state().mix) {
+    Q_EMIT message(tr("%1: paint where it holds, with Paint Mix of the tool bar")
+                       .arg(label_of_coordinates(settings.mixed)));
+  }
   const auto& binding = document_.state().binding;
-  if (binding && !same_coordinates(coordinate_settings(settings_), binding->settings())) {
+  if (binding && !chosen().is(binding->choice())) {
     bind_anew();
   } else if (binding && !jobs_.busy()) {
     update_beside();
@@ -140,7 +158,11 @@ void Session::set_settings(const GenerateSettings& settings) {
   }
 }
 
-/// By other coordinates: the cage stays as it is.
+CoordinateChoice Session::chosen() const {
+  return coordinate_choice(settings_, document_.state().mix);
+}
+
+/// By other coordinates, or elsewhere by the second of them: the cage stays as it is.
 void Session::bind_anew() {
   const State& state = document_.state();
   const bool overtakes =
@@ -149,20 +171,36 @@ void Session::bind_anew() {
     Q_EMIT message(tr("Wait for \"%1\" to end, or cancel it").arg(jobs_.title()));
     return; // what is bound is shown when that has ended
   }
-  Job::Work work =
-      [this, caged = document_.caged(), rest = state.rest, before = state.binding,
-       kind = coordinate_settings(settings_)](const Progress& progress) -> Result<Job::Apply> {
-    Result<std::shared_ptr<const Binding>> binding = bind_model(caged, *rest, kind, progress);
+  const CoordinateChoice choice = chosen();
+  const CoordinateChoice& bound = state.binding->choice();
+  const bool is_painted = choice.has_kinds_of(bound); // else the kinds are others
+  PreparedKinds kinds;
+  if (is_painted) {
+    kinds = state.binding->kinds();
+  }
+  Job::Work work = [this, caged = document_.caged(), rest = state.rest, before = state.binding,
+                    choice, is_painted,
+                    kinds](const Progress& progress) -> Result<Job::Apply> {
+    Result<std::shared_ptr<const Binding>> binding =
+        bind_model(caged, *rest, choice, progress, kinds);
     if (!binding) {
       return binding.error();
     }
-    return Job::Apply([this, before, binding = *binding] {
-      if (document_.state().binding == before) {
+    return Job::Apply([this, before, is_painted, binding = *binding] {
+      if (document_.state().binding != before) {
+        return;
+      }
+      if (is_painted) {
+        unbound_mix_.reset();
+        editor_.renew_binding(binding);
+        Q_EMIT message(tr("The model follows what is painted now"));
+      } else {
         editor_.bind_anew(binding);
         Q_EMIT message(tr("The model follows by other coordinates now"));
       }
     });
   };
+  unbound_mix_ = is_painted ? std::optional(choice.shares) : std::nullopt;
   if (overtakes) { // of a number that is changed step by step the last one counts
     waiting_.emplace(Waiting{tr("Bind"), std::move(work), Kind::binds_anew});
     jobs_.cancel();
@@ -181,8 +219,9 @@ void Session::update_beside() {
   }
   GenerateSettings wanted = settings_;
   wanted.coordinates = settings_.beside;
-  const CoordinateSettings chosen = coordinate_settings(wanted);
-  if (document_.beside() && same_coordinates(document_.beside()->settings(), chosen)) {
+  wanted.mixed.clear();
+  const CoordinateChoice chosen = coordinate_choice(wanted);
+  if (document_.beside() && document_.beside()->choice().is(chosen)) {
     return;
   }
   start(
@@ -206,15 +245,47 @@ void Session::update_beside() {
       Kind::compares);
 }
 
-/// What is bound says by which kind: after undo, and where another was refused.
+/// What is bound says by which kinds: after undo, and where others were refused. What is painted
+/// says where, and it is bound anew.
 void Session::show_bound_kind() {
   const auto& binding = document_.state().binding;
-  if (!binding || jobs_.busy()) {
-    return;
+  const bool paints_on = jobs_.busy() && under_way_ == Kind::binds_anew;
+  if (!binding || (jobs_.busy() && !paints_on)) {
+    return; // again when that has ended
   }
-  if (!same_coordinates(coordinate_settings(settings_), binding->settings())) {
-    take_coordinates(binding->settings(), settings_);
-    Q_EMIT settingsChanged();
+  const CoordinateChoice choice = chosen();
+  if (!choice.has_kinds_of(binding->choice())) {
+    if (!jobs_.busy()) {
+      take_coordinates(binding->choice(), settings_);
+      Q_EMIT settingsChanged();
+    }
+  } else if (!choice.is(binding->choice())) {
+    bind_anew();
+  }
+}
+
+/// Bound anew where something is painted, or was taken back.
+void Session::follow_paint() {
+  const auto& binding = document_.state().binding;
+  if (binding && jobs_.busy() && under_way_ == Kind::binds_anew && chosen().is(binding->choice())) {
+    waiting_.reset(); // what is painted is bound already
+    jobs_.cancel();
+  } else {
+    if (document_.state().mix && !chosen().second && !jobs_.busy()) {
+      Q_EMIT editor_.message(tr("painted. By which kind does it follow? Choose it in the panel "
+                                "Make a Cage: Where painted"));
+    }
+    show_bound_kind();
+  }
+}
+
+/// What could not be bound, or was cancelled, is not tried again and again.
+void Session::take_refused_paint_back() {
+  const std::optional<SharedShares> refused = std::exchange(unbound_mix_, std::nullopt);
+  const auto& binding = document_.state().binding;
+  if (refused && binding && chosen().has_kinds_of(binding->choice()) &&
+      document_.state().mix == *refused && !chosen().is(binding->choice())) {
+    editor_.set_mix(binding->choice().shares, tr("Take Paint Back"));
   }
 }
 
@@ -334,11 +405,8 @@ void Session::add_model(const fs::path& path) {
           }
           editor_.refine();
           State state = document_.state();
-          if (state.density) { // of the others' vertices
-            std::vector<float> density = *state.density;
-            density.resize(model->mesh.positions.size(), 0.0F);
-            state.density = std::make_shared<const std::vector<float>>(std::move(density));
-          }
+          state.density = with_more(state.density, model->mesh.positions.size());
+          state.mix = with_more(state.mix, model->mesh.positions.size());
           state.stages.reset();
           document_.set_model(freed_elsewhere(model));
           document_.set_state(state);
@@ -420,7 +488,8 @@ void Session::open_project(const fs::path& path, const fs::path& model_path, boo
         if (project.bound && model) {
           Result<std::shared_ptr<const Binding>> bound =
               bind_model({model, region}, *project.state.rest,
-                         coordinate_settings(project.settings), progress.part(0.4, 1));
+                         coordinate_choice(project.settings, fitting(project.state.mix, *model)),
+                         progress.part(0.4, 1));
           if (!bound) {
             return bound.error();
           }
@@ -459,9 +528,8 @@ void Session::restore(const Project& project, std::shared_ptr<const Model> model
                       std::shared_ptr<const Binding> binding) {
   document_.set_model(freed_elsewhere(std::move(model)));
   State state = project.state;
-  if (state.density && (!document_.has_model() ||
-                        state.density->size() != document_.model()->mesh.positions.size())) {
-    state.density.reset(); // of another model
+  for (SharedDensity* painted : {&state.density, &state.mix}) {
+    *painted = document_.has_model() ? fitting(*painted, *document_.model()) : nullptr;
   }
   state.region = std::move(region);
   state.binding = std::move(binding);
@@ -674,7 +742,7 @@ void Session::bind(Doubts doubts) {
   const bool judges = doubts == Doubts::tell && !known;
   start(tr("Bind"),
         [this, judges, caged = document_.caged(), rest, cage = document_.state().cage,
-         kind = coordinate_settings(settings_)](const Progress& whole) -> Result<Job::Apply> {
+         kind = chosen()](const Progress& whole) -> Result<Job::Apply> {
           if (judges) {
             const Model& model = caged.model();
             Result<JudgedCage> judged = judge_cage(*rest, &model, whole.part(0, 0.3));
@@ -924,10 +992,10 @@ void Session::start_export(const QString& title, const fs::path& chosen,
   }
   start(
       title,
-      [this, files, outputs, caged = document_.caged(), rest = document_.state().rest,
+      [this, files, outputs, caged = document_.caged(),
        binding = document_.state().binding](const Progress& progress) -> Result<Job::Apply> {
         Result<std::vector<FileNote>> notes =
-            export_models(caged, *rest, binding->settings(), outputs, progress);
+            export_models(caged, binding->coordinates(), outputs, progress);
         if (!notes) {
           return notes.error();
         }
@@ -988,11 +1056,10 @@ void Session::export_animation(const fs::path& path) {
   }
   start(
       title,
-      [this, path, files, caged = document_.caged(), rest = document_.state().rest,
-       binding = document_.state().binding,
+      [this, path, files, caged = document_.caged(), binding = document_.state().binding,
        line = document_.state().time_line](const Progress& progress) -> Result<Job::Apply> {
         if (Status s =
-                app::export_animation(caged, *rest, binding->settings(), line, path, progress);
+                app::export_animation(caged, binding->coordinates(), line, path, progress);
             !s) {
           return s.error();
         }
@@ -1006,16 +1073,39 @@ void Session::export_weights(const fs::path& path) {
     Q_EMIT failed(tr("Export Weights"), tr("Weights need a model and a cage."));
     return;
   }
-  const PolygonMesh cage =
-      document_.mode() == Mode::deform ? document_.cage_rest() : document_.cage();
+  const bool bound = document_.mode() == Mode::deform;
+  const PolygonMesh cage = bound ? document_.cage_rest() : document_.cage();
   start(
       tr("Export Weights"),
-      [this, path, cage, kind = coordinate_settings(settings_),
-       model = document_.caged().shared_model()](const Progress& progress) -> Result<Job::Apply> {
-        if (Status s = app::export_weights(*model, cage, kind, path, progress); !s) {
+      [this, path, cage, choice = bound ? document_.state().binding->choice() : chosen(),
+       caged = document_.caged()](const Progress& progress) -> Result<Job::Apply> {
+        if (Status s = app::export_weights(caged, cage, choice, path, progress); !s) {
           return s.error();
         }
         return Job::Apply([this, path] { Q_EMIT message(tr("Wrote %1").arg(name_of(path))); });
+      },
+      Kind::writes);
+}
+
+void Session::export_mix(const fs::path& path) {
+  const QString title = tr("Export Mix Weights");
+  if (!document_.state().mix) {
+    Q_EMIT failed(title, tr("Nothing is painted yet. Paint where another kind of coordinates "
+                            "holds, with Paint Mix of the tool bar."));
+    return;
+  }
+  const std::vector<fs::path> files = files_of_parts({path});
+  if (!may_replace_files(title, path, files)) {
+    return;
+  }
+  start(
+      title,
+      [this, path, files, model = document_.model(),
+       mix = document_.state().mix](const Progress&) -> Result<Job::Apply> {
+        if (Status s = app::export_mix(*model, mix, path); !s) {
+          return s.error();
+        }
+        return Job::Apply([this, files] { Q_EMIT message(what_was_written(files)); });
       },
       Kind::writes);
 }

@@ -123,6 +123,8 @@ public:
   /// The time line as one file that moves: .glb, .pc2 or .mdd.
   void export_animation(const std::filesystem::path& path);
   void export_weights(const std::filesystem::path& path);
+  /// What is painted for another kind of coordinates: numbers for `cagewright bind --mix-weights`.
+  void export_mix(const std::filesystem::path& path);
 
 Q_SIGNALS:
   void message(const QString& text); ///< for the status bar
@@ -170,7 +172,11 @@ private:
   /// Whether the cage can be changed as a whole; says why not.
   bool can_repair(const QString& title);
   void go_on(Then then);
+  /// By which coordinates the model is to follow, as it is set and painted.
+  [[nodiscard]] CoordinateChoice chosen() const;
   void bind_anew();
+  void follow_paint();
+  void take_refused_paint_back();
   void show_bound_kind();
   void update_beside();
 
@@ -190,7 +196,8 @@ private:
     Job::Work work;
     Kind kind;
   };
-  std::optional<Waiting> waiting_; // for the job under way to end
+  std::optional<Waiting> waiting_;           // for the job under way to end
+  std::optional<SharedShares> unbound_mix_; // painted, and being bound
 };
 
 /// PATH with something between stem and extension: "a/b.obj", "-01" gives "a/b-01.obj". What files

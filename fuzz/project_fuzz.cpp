@@ -23,6 +23,10 @@ void check(const app::Project& project) {
   for (const std::string& note : project.notes) {
     require_one_line(note);
   }
+  const auto within = [](const auto& painted, float least) {
+    return !painted || std::ranges::all_of(*painted, [&](float s) { return s >= least && s <= 1; });
+  };
+  require(within(state.density, -1) && within(state.mix, 0), "what is painted is within its range");
   if (!state.rest) {
     require(state.poses.empty() && state.time_line.keys.empty(), "poses are of a cage");
     return;

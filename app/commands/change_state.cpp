@@ -14,6 +14,15 @@ ChangeState::ChangeState(Document& document, State before, State after, const QS
   shown_before_ = shown_before;
 }
 
+void ChangeState::replace_binding(const std::shared_ptr<const Binding>& before,
+                                  const std::shared_ptr<const Binding>& after) {
+  for (State* state : {&before_, &after_}) {
+    if (state->binding == before) {
+      state->binding = after;
+    }
+  }
+}
+
 void ChangeState::undo() {
   document_.set_state(before_);
   if (shown_before_) {

@@ -19,6 +19,10 @@ public:
   ChangeState(Document& document, State before, State after, const QString& text,
               const Shown& shown_before);
 
+  /// What was bound by the one is bound by the other: see Editor::renew_binding().
+  void replace_binding(const std::shared_ptr<const Binding>& before,
+                       const std::shared_ptr<const Binding>& after);
+
   void undo() override;
   void redo() override;
 

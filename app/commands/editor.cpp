@@ -168,6 +168,7 @@ void Editor::replace_cage(std::shared_ptr<const PolygonMesh> cage,
 State Editor::without_cage() const {
   State state;
   state.density = document_.state().density;
+  state.mix = document_.state().mix;
   state.region = document_.state().region;
   return state;
 }
@@ -240,6 +241,30 @@ void Editor::bind_anew(std::shared_ptr<const Binding> binding) {
   state.binding = std::move(binding);
   change(std::move(state), tr("Other Coordinates"));
   document_.set_shown(shown);
+}
+
+void Editor::renew_binding(const std::shared_ptr<const Binding>& binding) {
+  const std::shared_ptr<const Binding> before = document_.state().binding;
+  const auto renew = [&](State& state) {
+    if (state.binding == before) {
+      state.binding = binding;
+    }
+  };
+  for (int i = 0; i < undo_stack_.count(); ++i) {
+    // All are ours; Qt shows them as const so that nobody changes what they do.
+    if (auto* step = dynamic_cast<ChangeState*>(const_cast<QUndoCommand*>(undo_stack_.command(i)))) {
+      step->replace_binding(before, binding);
+    }
+  }
+  if (move_) {
+    renew(move_->before);
+  }
+  if (step_) {
+    renew(step_->before);
+  }
+  State state = document_.state();
+  state.binding = binding;
+  document_.set_state(state);
 }
 
 void Editor::refine() {
@@ -386,6 +411,13 @@ void Editor::set_region(std::shared_ptr<const Region> region, const QString& tex
 void Editor::set_density(SharedDensity density, const QString& text) {
   State state = document_.state();
   state.density = std::move(density);
+  change(std::move(state), text);
+}
+
+void Editor::set_mix(SharedShares mix, const QString& text) {
+  State state = document_.state();
+  state.mix = std::move(mix);
+  state.pins.clear();
   change(std::move(state), text);
 }
 

@@ -85,6 +85,10 @@ public:
   void bind(std::shared_ptr<const Binding> binding, std::shared_ptr<const PolygonMesh> rest);
   /// The same cage and model, bound by another kind of coordinates: the pose stays.
   void bind_anew(std::shared_ptr<const Binding> binding);
+  /// What is bound follows what was painted: no step of its own. Steps before and after have the
+  /// new binding, too, or each stroke of a brush would keep weights of its own; whoever comes back
+  /// to one binds anew.
+  void renew_binding(const std::shared_ptr<const Binding>& binding);
   /// Back to refine mode, with the cage at rest. Poses and keyframes stay while the topology does;
   /// a deformation that is none of them becomes the pose "Last pose".
   void refine();
@@ -115,6 +119,8 @@ public:
   void set_region(std::shared_ptr<const Region> region, const QString& text);
   /// Where the cage is to be finer; null: nowhere.
   void set_density(SharedDensity density, const QString& text);
+  /// What is painted for another kind of coordinates: its pins go, which have weights of before.
+  void set_mix(SharedShares mix, const QString& text);
 
   void set_keyframe(int frame);
   void remove_keyframe(int frame);

@@ -2,6 +2,7 @@
 /// A model bound to a cage, as the document keeps it.
 #pragma once
 
+#include "app/document/coordinate_choice.h"
 #include "app/document/deformed_model.h"
 #include "app/document/region.h"
 #include <cagewright/coordinates/kinds.h>
@@ -17,15 +18,23 @@
 
 namespace cagewright::app {
 
+/// A cage prepared for the kinds of a choice, so that it can be bound anew where other vertices of
+/// the model are painted.
+struct PreparedKinds {
+  std::shared_ptr<const Coordinates> first;
+  std::shared_ptr<const Coordinates> second; ///< null: not needed yet
+};
+
 /// Keeps a Deformer. The document only holds on to it; DeformLoop alone uses it.
 class Binding {
 public:
   /// \param caged  what is bound, where it is not all of its model
-  Binding(Deformer deformer, CoordinateSettings settings,
+  /// \param coordinates  of the model's vertices
+  Binding(Deformer deformer, CoordinateChoice choice,
           std::shared_ptr<const Coordinates> coordinates, const CagedModel& caged = {},
-          std::optional<UnseenShare> unseen = {})
-      : deformer_(std::move(deformer)), settings_(std::move(settings)),
-        coordinates_(std::move(coordinates)), unseen_(unseen) {
+          std::optional<UnseenShare> unseen = {}, PreparedKinds kinds = {})
+      : deformer_(std::move(deformer)), choice_(std::move(choice)), settings_(choice_.settings()),
+        coordinates_(std::move(coordinates)), kinds_(std::move(kinds)), unseen_(unseen) {
     if (caged.region) {
       caged_ = caged;
       const PolygonMesh& whole = caged.whole->mesh;
@@ -55,15 +64,20 @@ public:
   }
   /// How much the model follows what it does not see; none: not known.
   [[nodiscard]] const std::optional<UnseenShare>& unseen() const { return unseen_; }
-  /// By which kind it is bound.
+  /// By which kinds it is bound, and where.
+  [[nodiscard]] const CoordinateChoice& choice() const { return choice_; }
+  /// The same, but for where.
   [[nodiscard]] const CoordinateSettings& settings() const { return settings_; }
-  /// For points that are none of the model's vertices.
+  /// Of vertices of the model; of other points only where one kind alone holds.
   [[nodiscard]] const Coordinates& coordinates() const { return *coordinates_; }
+  [[nodiscard]] const PreparedKinds& kinds() const { return kinds_; }
 
 private:
   mutable Deformer deformer_;
+  CoordinateChoice choice_;
   CoordinateSettings settings_;
   std::shared_ptr<const Coordinates> coordinates_;
+  PreparedKinds kinds_;
   std::optional<UnseenShare> unseen_;
   CagedModel caged_;            // of a region
   mutable NormalField normals_; // of its whole

@@ -226,6 +226,7 @@ void Document::set_model(std::shared_ptr<const Model> model) {
   frame_ = state_.time_line.first;
   model_ = std::move(model);
   deformed_.reset();
+  painting_.reset();
   set_metrics({});
   Q_EMIT modelChanged();
   Q_EMIT modelMoved();
@@ -234,11 +235,16 @@ void Document::set_model(std::shared_ptr<const Model> model) {
 void Document::set_state(const State& state) {
   const State old = std::exchange(state_, state);
   cut_to(state_.selection, state_.rest.get());
+  // Bound by other coordinates it is where it was until those have moved it.
+  const bool is_bound_anew = state_.binding && old.binding && state_.rest == old.rest &&
+                             state_.region == old.region;
   if (state_.binding != old.binding) {
-    comparing_ = false;
-    blend_ = 1;
-    time_.reset();
-    deformed_.reset();
+    if (!is_bound_anew) {
+      comparing_ = false;
+      blend_ = 1;
+      time_.reset();
+      deformed_.reset();
+    }
     model_weights_.clear();
   }
   update_shown();
@@ -292,6 +298,11 @@ void Document::set_state(const State& state) {
   if (state_.density != old.density) {
     Q_EMIT colorsChanged();
     Q_EMIT densityChanged();
+  }
+  if (state_.mix != old.mix) {
+    painting_.reset();
+    Q_EMIT colorsChanged();
+    Q_EMIT mixChanged();
   }
   if (!same_time_line(state_.time_line, old.time_line)) {
     frame_ = std::clamp<double>(frame_, state_.time_line.first, state_.time_line.last);
@@ -372,6 +383,11 @@ void Document::set_density(SharedDensity density) {
   state_.density = std::move(density);
   Q_EMIT colorsChanged();
   Q_EMIT densityChanged();
+}
+
+void Document::show_mix(SharedShares mix) {
+  painting_ = std::move(mix);
+  Q_EMIT colorsChanged();
 }
 
 void Document::set_cage_distances(std::vector<float> distances) {

@@ -172,6 +172,10 @@ public:
                     std::shared_ptr<const DeformedModel> beside = nullptr);
   void set_beside(std::shared_ptr<const Binding> binding);
   void set_density(SharedDensity density);
+  /// As it is while it is painted: mixChanged() comes when that is over.
+  void show_mix(SharedShares mix);
+  /// What is painted for another kind of coordinates, as shown; null: nothing.
+  [[nodiscard]] const SharedShares& shown_mix() const { return painting_ ? painting_ : state_.mix; }
   void set_cage_distances(std::vector<float> distances);
   void set_model_weights(std::vector<float> weights);
 
@@ -191,6 +195,7 @@ Q_SIGNALS:
   void followingChanged();
   void colorsChanged();  ///< cage_distances(), model_weights() or State::density
   void densityChanged(); ///< State::density
+  void mixChanged();     ///< State::mix
   void pinsChanged();    ///< State::pins
   void layersChanged();
   void toolsChanged();
@@ -219,6 +224,7 @@ private:
   double blend_ = 1;
   std::optional<double> time_;
   double frame_ = 1;
+  SharedShares painting_; // null: State::mix
 };
 
 } // namespace cagewright::app

@@ -6,6 +6,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace cagewright::app {
 namespace {
@@ -152,31 +153,53 @@ const CoordinateKind& kind_of(const GenerateSettings& settings) {
   return kind != nullptr ? *kind : *coordinate_kinds().front();
 }
 
-GenerateOption beside_option() {
+/// One of the kinds, or none.
+GenerateOption::Choice choice_of_kinds(QString GenerateSettings::*name, const QString& none) {
   GenerateOption::Choice choice{
       {"none"},
-      {text("Nothing")},
-      [](const GenerateSettings& s) {
+      {none},
+      [name](const GenerateSettings& s) {
         const auto kinds = coordinate_kinds();
         const auto at = std::ranges::find_if(
-            kinds, [&](const CoordinateKind* k) { return name_of(*k) == s.beside; });
+            kinds, [&](const CoordinateKind* k) { return name_of(*k) == s.*name; });
         return at == kinds.end() ? 0 : 1 + static_cast<int>(at - kinds.begin());
       },
-      [](GenerateSettings& s, int i) {
-        s.beside =
+      [name](GenerateSettings& s, int i) {
+        s.*name =
             i == 0 ? QString() : name_of(*coordinate_kinds()[static_cast<std::size_t>(i - 1)]);
       }};
   for (const CoordinateKind* kind : coordinate_kinds()) {
     choice.keys.append(name_of(*kind));
     choice.labels.append(label_of(*kind));
   }
+  return choice;
+}
+
+GenerateOption mixed_option() {
+  return {"mix",
+          text("Where painted"),
+          text("Another kind for a part of the model: paint it with Paint Mix of the tool bar. "
+               "Between the two the model goes between where they take it. Harmonic keeps arms "
+               "apart, say, and green bends the trunk."),
+          Group::binding,
+          choice_of_kinds(&GenerateSettings::mixed, text("The same")),
+          [](const GenerateSettings&) { return true; }};
+}
+
+GenerateOption beside_option() {
   return {"beside",
           text("Beside it"),
           text("While the model is bound: the same pose by other coordinates, beside it, to choose "
                "by looking. It is not exported."),
           Group::binding,
-          choice,
+          choice_of_kinds(&GenerateSettings::beside, text("Nothing")),
           [](const GenerateSettings&) { return true; }};
+}
+
+/// What is painted is followed by; null: nothing else than the rest.
+const CoordinateKind* mixed_kind_of(const GenerateSettings& settings) {
+  const CoordinateKind* kind = find_coordinate_kind(settings.mixed.toStdString());
+  return kind == &kind_of(settings) ? nullptr : kind;
 }
 
 /// A number that some kinds can be given, shown while the kind is one of them.
@@ -196,19 +219,29 @@ GenerateOption option_of_kinds(const CoordinateOption& option) {
                                return s.coordinate_numbers.try_emplace(name, initial).first->second;
                              }},
       [&option](const GenerateSettings& s) {
-        return std::ranges::find(kind_of(s).options, &option) != kind_of(s).options.end();
+        const auto has = [&option](const CoordinateKind& kind) {
+          return std::ranges::find(kind.options, &option) != kind.options.end();
+        };
+        const CoordinateKind* mixed = mixed_kind_of(s);
+        return has(kind_of(s)) || (mixed != nullptr && has(*mixed));
       }};
 }
 
 } // namespace
+
+QString label_of_coordinates(const CoordinateSettings& settings) {
+  return label_of(settings.kind());
+}
 
 QString label_of_coordinates(const QString& name) {
   const CoordinateKind* kind = find_coordinate_kind(name.toStdString());
   return kind != nullptr ? label_of(*kind) : QString();
 }
 
-CoordinateSettings coordinate_settings(const GenerateSettings& settings) {
-  CoordinateSettings chosen(kind_of(settings));
+namespace {
+
+CoordinateSettings with_numbers(const CoordinateKind& kind, const GenerateSettings& settings) {
+  CoordinateSettings chosen(kind);
   for (const auto& [name, value] : settings.coordinate_numbers) {
     if (chosen.has(name)) {
       static_cast<void>(chosen.set(name, QString::number(value, 'g', 17).toStdString()));
@@ -217,12 +250,32 @@ CoordinateSettings coordinate_settings(const GenerateSettings& settings) {
   return chosen;
 }
 
-void take_coordinates(const CoordinateSettings& bound, GenerateSettings& settings) {
-  settings.coordinates = name_of(bound.kind());
+void take_numbers(const CoordinateSettings& bound, GenerateSettings& settings) {
   for (const CoordinateOption* option : bound.kind().options) {
     if (option->words.empty()) {
       settings.coordinate_numbers[std::string(option->name)] = bound.number(*option);
     }
+  }
+}
+
+} // namespace
+
+CoordinateChoice coordinate_choice(const GenerateSettings& settings, SharedShares painted) {
+  CoordinateChoice choice(with_numbers(kind_of(settings), settings));
+  if (const CoordinateKind* mixed = mixed_kind_of(settings)) {
+    choice.second = with_numbers(*mixed, settings);
+    choice.shares = std::move(painted);
+  }
+  return choice;
+}
+
+void take_coordinates(const CoordinateChoice& bound, GenerateSettings& settings) {
+  settings.coordinates = name_of(bound.first.kind());
+  take_numbers(bound.first, settings);
+  settings.mixed.clear();
+  if (bound.second) {
+    settings.mixed = name_of(bound.second->kind());
+    take_numbers(*bound.second, settings);
   }
 }
 
@@ -240,6 +293,7 @@ const std::vector<GenerateOption>& generate_options() {
     const std::vector<GenerateOption> density = density_options();
     all.insert(all.end(), density.begin(), density.end());
     all.push_back(coordinates_option());
+    all.push_back(mixed_option());
     for (const CoordinateOption* option : coordinate_options()) {
       if (option->words.empty()) {
         all.push_back(option_of_kinds(*option));

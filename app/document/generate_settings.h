@@ -3,6 +3,7 @@
 /// preferences share.
 #pragma once
 
+#include "app/document/coordinate_choice.h"
 #include <cagewright/cage/option_table.h>
 #include <cagewright/coordinates/kinds.h>
 
@@ -32,6 +33,7 @@ struct GenerateSettings {
   QString coordinates =
       QString::fromUtf8(coordinate_kinds().front()->name.data(),
                         static_cast<qsizetype>(coordinate_kinds().front()->name.size()));
+  QString mixed;  ///< another kind, for what is painted; empty, or the same: none
   QString beside; ///< another kind to compare with, while bound; empty: none
   /// Of its options and of those of other kinds, by CoordinateOption::name; none: as they are by
   /// themselves.
@@ -86,10 +88,11 @@ const std::vector<GenerateOption>& generate_options();
 
 /// "Mean value" of "mean_value"; empty: no such kind.
 QString label_of_coordinates(const QString& name);
-/// The kind that the settings name, with its numbers.
-CoordinateSettings coordinate_settings(const GenerateSettings& settings);
-/// The other way round.
-void take_coordinates(const CoordinateSettings& bound, GenerateSettings& settings);
+QString label_of_coordinates(const CoordinateSettings& settings);
+/// The kinds that the settings name, with their numbers; the second where `painted` says so.
+CoordinateChoice coordinate_choice(const GenerateSettings& settings, SharedShares painted = nullptr);
+/// The other way round, but for what is painted.
+void take_coordinates(const CoordinateChoice& bound, GenerateSettings& settings);
 
 QJsonObject to_json(const GenerateSettings& settings);
 /// What is missing, of the wrong kind or out of range keeps its default.

@@ -77,7 +77,7 @@ template <class Visit> void visit(Layers& l, const Visit& field) {
 }
 
 template <class Visit> void visit(ToolSettings& t, const Visit& field) {
-  field("tool", t.tool, Range{0, static_cast<double>(Tool::region)});
+  field("tool", t.tool, Range{0, static_cast<double>(Tool::mix)});
   field("brush_radius", t.brush_radius, Range{1, 2000});
   field("brush_strength", t.brush_strength, Range{0.01, 1});
   field("axes", t.axes, Range{0, static_cast<double>(AxesKind::view)});
@@ -243,7 +243,7 @@ std::optional<std::string> share_fault(const QJsonValue& json) {
 }
 
 /// In steps of 1/100, which is finer than one can see, packed.
-QString density_to_text(const std::vector<float>& density) {
+QString painted_to_text(const std::vector<float>& density) {
   QByteArray steps;
   for (const float d : density) {
     steps.append(static_cast<char>(std::lround(100 * std::clamp(d, -1.0F, 1.0F))));
@@ -251,7 +251,8 @@ QString density_to_text(const std::vector<float>& density) {
   return QString::fromLatin1(qCompress(steps).toBase64());
 }
 
-SharedDensity density_from_text(const QString& text) {
+/// \param least  none is less; 1 is the most. Null: that is no such text.
+std::shared_ptr<const std::vector<float>> painted_from_text(const QString& text, int least) {
   const QByteArray packed = QByteArray::fromBase64(text.toLatin1());
   // (The first four bytes say how large it gets: what is no such thing must not be believed.)
   constexpr qsizetype most_vertices = 200'000'000;
@@ -262,13 +263,16 @@ SharedDensity density_from_text(const QString& text) {
   if (steps.isEmpty()) {
     return nullptr;
   }
-  std::vector<float> density;
-  density.reserve(static_cast<std::size_t>(steps.size()));
+  std::vector<float> painted;
+  painted.reserve(static_cast<std::size_t>(steps.size()));
   for (const char step : steps) {
-    density.push_back(
-        std::clamp(static_cast<float>(static_cast<signed char>(step)) / 100, -1.0F, 1.0F));
+    const int hundredths = static_cast<signed char>(step);
+    if (hundredths < 100 * least || hundredths > 100) {
+      return nullptr;
+    }
+    painted.push_back(static_cast<float>(hundredths) / 100);
   }
-  return std::make_shared<const std::vector<float>>(std::move(density));
+  return std::make_shared<const std::vector<float>>(std::move(painted));
 }
 
 Status read_poses(const QJsonObject& json, const fs::path& path, State& state) {
@@ -442,7 +446,10 @@ QByteArray format_project(const Project& project, const fs::path& path) {
         QJsonObject{{"name", state.region->name}, {"faces", runs_to_json(state.region->faces)}};
   }
   if (state.density) {
-    json["density"] = density_to_text(*state.density);
+    json["density"] = painted_to_text(*state.density);
+  }
+  if (state.mix) {
+    json["mix"] = painted_to_text(*state.mix);
   }
   if (!project.saved_as.empty()) {
     json["saved_as"] = QString::fromStdString(project.saved_as.string());
@@ -519,10 +526,18 @@ Result<Project> parse_project(const QByteArray& bytes, const fs::path& path) {
     }
     project.region_faces = *faces;
   }
-  const QString density = json["density"].toString();
-  project.state.density = density_from_text(density);
-  if (!density.isEmpty() && !project.state.density) {
-    project.notes.emplace_back("the painted density cannot be read; it is left out");
+  const auto painted = [&](const char* name, int least, const char* what) {
+    const QString text = json[QLatin1String(name)].toString();
+    auto read = painted_from_text(text, least);
+    if (!text.isEmpty() && !read) {
+      project.notes.push_back(std::string(what) + " cannot be read; it is left out");
+    }
+    return read;
+  };
+  project.state.density = painted("density", -1, "the painted density");
+  project.state.mix = painted("mix", 0, "what is painted for another kind of coordinates");
+  if (project.state.mix && std::ranges::all_of(*project.state.mix, [](float s) { return s == 0; })) {
+    project.state.mix.reset();
   }
   project.settings = generate_settings_from_json(json["generate"].toObject());
   const QJsonObject view = json["view"].toObject();

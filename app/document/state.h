@@ -2,6 +2,7 @@
 /// All of a document that undo brings back.
 #pragma once
 
+#include "app/document/coordinate_choice.h"
 #include "app/edit/selection.h"
 #include "cage/decompose.h"
 #include <cagewright/core/geometry.h>
@@ -76,6 +77,7 @@ struct State {
   TimeLine time_line;
   std::vector<Pin> pins;                          ///< in deform mode
   SharedDensity density;                          ///< null: none was painted
+  SharedShares mix;                               ///< painted for another kind; null: nothing is
   std::shared_ptr<const BoxDecomposition> stages; ///< null: none were made
 };
 

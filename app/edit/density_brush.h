@@ -18,9 +18,10 @@ struct Dab {
   bool erases = false;         ///< draws towards 0 instead, by `amount`
 };
 
-/// Adds dabs, one after the other, to a density in [-1, 1], one number for each of V vertices; it
-/// stays in that range. \param normals  V, unit Cost: O(V), on all cores.
+/// Adds dabs, one after the other, to what is painted, one number for each of V vertices; it stays
+/// within [least, 1]. Cost: O(V), on all cores.
+/// \param normals  V, unit
 void paint_dabs(std::span<const Dab> dabs, std::span<const Vec3> positions,
-                std::span<const Vec3> normals, std::vector<float>& density);
+                std::span<const Vec3> normals, std::vector<float>& painted, float least = -1);
 
 } // namespace cagewright::app

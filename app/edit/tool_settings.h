@@ -13,11 +13,12 @@ enum class Tool {
   pull,   ///< drags the model; the cage follows
   paint,  ///< where the cage is to be finer
   region, ///< what of the model the cage is for
+  mix,    ///< where the model follows by another kind of coordinates
 };
 
-/// Whether a tool has a brush that goes over the model at rest.
+/// Whether a tool has a brush that goes over the model.
 constexpr bool is_brush(Tool tool) {
-  return tool == Tool::paint || tool == Tool::region;
+  return tool == Tool::paint || tool == Tool::region || tool == Tool::mix;
 }
 enum class AxesKind { world, local, view };
 enum class Falloff { smooth, linear, sharp };

@@ -4,8 +4,10 @@
 #include "app/document/time_line.h"
 #include "app/jobs/freed_elsewhere.h"
 #include "cage/box_cage.h"
+#include "io/atomic_file.h"
 #include <cagewright/cage/density.h>
 #include <cagewright/cage/generate_for_polygons.h>
+#include <cagewright/coordinates/mixed.h>
 #include <cagewright/deform/normals.h>
 #include <cagewright/deform/stream.h>
 #include <cagewright/deform/weights_file.h>
@@ -186,32 +188,78 @@ Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path
   return std::make_shared<const PolygonMesh>(weld(*mesh));
 }
 
+namespace {
+
+/// How much of the second kind each vertex takes of what the cage is for.
+std::vector<double> shares_of(const CagedModel& caged, const SharedShares& painted) {
+  std::vector<double> shares(painted->begin(), painted->end());
+  return caged.region ? gathered<double>(*caged.region, shares) : shares;
+}
+
+/// The cage made ready for the kinds that have a part in it, and for the model's vertices.
+Result<std::shared_ptr<const Coordinates>> prepare(const CagedModel& caged, const PolygonMesh& cage,
+                                                   const CoordinateChoice& choice,
+                                                   PreparedKinds& kinds, const Progress& progress) {
+  if (choice.second) { // before the work, and before something is painted: whether they mix at all
+    CoordinateSettings both = choice.first;
+    both.mix_with(*choice.second);
+    if (const auto rule = coordinate_rule(cage, both); !rule) {
+      return rule.error();
+    }
+  }
+  const auto make = [&](std::shared_ptr<const Coordinates>& kind, const CoordinateSettings& settings,
+                        const Progress& part) -> Status {
+    if (!kind) {
+      auto made = prepare_coordinates(cage, settings, part);
+      if (!made) {
+        return made.error();
+      }
+      kind = *std::move(made);
+    }
+    return success();
+  };
+  if (Status s = make(kinds.first, choice.first, progress.part(0, 0.5)); !s) {
+    return s.error();
+  }
+  if (!choice.mixes()) {
+    return kinds.first;
+  }
+  if (Status s = make(kinds.second, *choice.second, progress.part(0.5, 1)); !s) {
+    return s.error();
+  }
+  return mixed_coordinates(kinds.first, kinds.second, caged.model().mesh.positions,
+                           shares_of(caged, choice.shares));
+}
+
+} // namespace
+
 Result<std::shared_ptr<const Binding>> bind_model(const CagedModel& caged, const PolygonMesh& cage,
-                                                  const CoordinateSettings& coordinates,
-                                                  const Progress& progress) {
+                                                  const CoordinateChoice& choice,
+                                                  const Progress& progress,
+                                                  PreparedKinds prepared) {
   const Model& model = caged.model();
+  const auto coordinates = prepare(caged, cage, choice, prepared, progress.part(0, 0.45));
+  if (!coordinates) {
+    return coordinates.error();
+  }
   DeformerOptions options;
-  options.coordinates = coordinates;
   const double bytes = 4.0 * static_cast<double>(model.mesh.positions.size()) *
-                       static_cast<double>(cage.positions.size());
+                       static_cast<double>((*coordinates)->columns());
   if (bytes > most_weight_bytes) {
     options.storage = WeightStorage::compact;
   }
-  Result<Deformer> deformer = Deformer::bind(model.mesh, cage, options, {}, progress.part(0, 0.9));
+  Result<Deformer> deformer =
+      Deformer::bind(model.mesh, **coordinates, options, {}, progress.part(0.45, 0.95));
   if (!deformer) {
     return deformer.error();
   }
-  auto prepared = prepare_coordinates(cage, coordinates, progress.part(0.9, 0.95));
-  if (!prepared) {
-    return prepared.error();
-  }
   const Result<UnseenShare> unseen =
-      unseen_share(cage, **prepared, model.mesh.positions, progress.part(0.95, 1));
+      unseen_share(cage, **coordinates, model.mesh.positions, progress.part(0.95, 1));
   if (!unseen) {
     return unseen.error();
   }
-  return freed_elsewhere(std::make_shared<const Binding>(std::move(*deformer), coordinates,
-                                                         *std::move(prepared), caged, *unseen));
+  return freed_elsewhere(std::make_shared<const Binding>(*std::move(deformer), choice, *coordinates,
+                                                         caged, *unseen, std::move(prepared)));
 }
 
 Result<JudgedCage> judge_cage(const PolygonMesh& cage, const Model* model,
@@ -266,20 +314,15 @@ fs::path path_of_part(const Model& model, std::size_t part, const fs::path& path
 }
 
 Result<std::vector<FileNote>> export_models(const CagedModel& caged,
-                                            const PolygonMesh& cage_at_rest,
-                                            const CoordinateSettings& settings,
+                                            const Coordinates& coordinates,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress) {
-  const auto coordinates = prepare_coordinates(cage_at_rest, settings, progress.part(0, 0.2));
-  if (!coordinates) {
-    return coordinates.error();
-  }
   std::vector<std::vector<Vec3>> poses;
   for (const ModelOutput& output : outputs) {
     poses.push_back(*output.cage);
   }
   const Result<StreamedPoses> moved =
-      deform_streaming(**coordinates, poses, caged.model().mesh.positions, progress.part(0.2, 0.8));
+      deform_streaming(coordinates, poses, caged.model().mesh.positions, progress.part(0, 0.8));
   if (!moved) {
     return moved.error();
   }
@@ -301,19 +344,15 @@ Result<std::vector<FileNote>> export_models(const CagedModel& caged,
   return notes;
 }
 
-Status export_animation(const CagedModel& caged, const PolygonMesh& cage_at_rest,
-                        const CoordinateSettings& settings, const TimeLine& time_line,
-                        const std::filesystem::path& path, const Progress& progress) {
-  const auto coordinates = prepare_coordinates(cage_at_rest, settings, progress.part(0, 0.1));
-  if (!coordinates) {
-    return coordinates.error();
-  }
+Status export_animation(const CagedModel& caged, const Coordinates& coordinates,
+                        const TimeLine& time_line, const std::filesystem::path& path,
+                        const Progress& progress) {
   std::vector<std::vector<Vec3>> keys;
   for (const Keyframe& key : time_line.keys) {
     keys.push_back(*key.positions);
   }
   Result<StreamedPoses> moved =
-      deform_streaming(**coordinates, keys, caged.model().mesh.positions, progress.part(0.1, 0.6));
+      deform_streaming(coordinates, keys, caged.model().mesh.positions, progress.part(0, 0.6));
   if (!moved) {
     return moved.error();
   }
@@ -358,16 +397,32 @@ Status export_animation(const CagedModel& caged, const PolygonMesh& cage_at_rest
   return success();
 }
 
-Status export_weights(const Model& model, const PolygonMesh& cage,
-                      const CoordinateSettings& settings, const std::filesystem::path& path,
+Status export_weights(const CagedModel& caged, const PolygonMesh& cage,
+                      const CoordinateChoice& choice, const std::filesystem::path& path,
                       const Progress& progress) {
-  const auto coordinates = prepare_coordinates(cage, settings, progress.part(0, 0.2));
+  PreparedKinds kinds;
+  const auto coordinates = prepare(caged, cage, choice, kinds, progress.part(0, 0.2));
   if (!coordinates) {
     return coordinates.error();
   }
-  const Result<PointCounts> written = bind_to_file(**coordinates, settings, model.mesh.positions,
-                                                   cage, path, progress.part(0.2, 1));
+  const Result<PointCounts> written =
+      bind_to_file(**coordinates, choice.settings(), caged.model().mesh.positions, cage, path,
+                   progress.part(0.2, 1));
   return written ? success() : Status(written.error());
+}
+
+Status export_mix(const Model& model, const SharedShares& mix, const fs::path& path) {
+  for (std::size_t number = 0; number < model.parts.size(); ++number) {
+    const ModelPart& part = model.parts[number];
+    std::string text;
+    for (const float share : std::span(*mix).subspan(part.first, part.count)) {
+      text += QByteArray::number(share, 'g', 9).toStdString() + '\n';
+    }
+    if (Status s = write_file_atomically(path_of_part(model, number, path), text); !s) {
+      return s;
+    }
+  }
+  return success();
 }
 
 } // namespace cagewright::app

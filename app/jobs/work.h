@@ -2,6 +2,7 @@
 /// The work of the application's jobs: from values to values, on any thread.
 #pragma once
 
+#include "app/document/binding.h"
 #include "app/document/generate_settings.h"
 #include "app/document/model.h"
 #include "app/document/region.h"
@@ -41,10 +42,11 @@ make_stages(const Model& model, const GenerateSettings& settings, const Progress
 Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path& path);
 
 /// Binds what the cage is for. Weights that would take more than 1.5 GB are kept in 16 bits.
-/// Errors: those of Deformer::bind().
-Result<std::shared_ptr<const Binding>> bind_model(const CagedModel& caged, const PolygonMesh& cage,
-                                                  const CoordinateSettings& coordinates = {},
-                                                  const Progress& progress = {});
+/// \param prepared  of the same cage, by the same kinds; what is not there is made
+/// Errors: those of Deformer::bind(), prepare_coordinates() and mixed_rule().
+Result<std::shared_ptr<const Binding>>
+bind_model(const CagedModel& caged, const PolygonMesh& cage, const CoordinateChoice& choice = {},
+           const Progress& progress = {}, PreparedKinds prepared = {});
 
 struct JudgedCage {
   std::shared_ptr<const ValidityReport> report;
@@ -72,22 +74,26 @@ std::filesystem::path path_of_part(const Model& model, std::size_t part,
 /// poses. \returns notes about what the first of them cannot hold Errors: cannot_open (a file of
 /// the model is gone), mismatch (it is another now), cannot_write, unsupported, invalid_cage,
 /// cancelled.
-Result<std::vector<FileNote>> export_models(const CagedModel& caged,
-                                            const PolygonMesh& cage_at_rest,
-                                            const CoordinateSettings& settings,
+/// \param coordinates  by which what the cage is for is bound
+Result<std::vector<FileNote>> export_models(const CagedModel& caged, const Coordinates& coordinates,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress = {});
 
 /// Writes the model as it moves along the time line: see write_animation(). Keyframes are what is
 /// deformed, whatever the number of frames.
 /// Errors: those of write_animation(), invalid_cage.
-Status export_animation(const CagedModel& caged, const PolygonMesh& cage_at_rest,
-                        const CoordinateSettings& settings, const TimeLine& time_line,
-                        const std::filesystem::path& path, const Progress& progress = {});
+Status export_animation(const CagedModel& caged, const Coordinates& coordinates,
+                        const TimeLine& time_line, const std::filesystem::path& path,
+                        const Progress& progress = {});
 
-/// Binds once more and writes the weights as NumPy's .npz. Errors: cannot_write, cancelled.
-Status export_weights(const Model& model, const PolygonMesh& cage,
-                      const CoordinateSettings& settings, const std::filesystem::path& path,
+/// Binds once more and writes the weights as NumPy's .npz. Errors: those of bind_model(),
+/// cannot_write.
+Status export_weights(const CagedModel& caged, const PolygonMesh& cage,
+                      const CoordinateChoice& choice, const std::filesystem::path& path,
                       const Progress& progress = {});
+
+/// Writes what is painted for another kind, a number for each vertex, each part of the model to a
+/// file of its own: what `cagewright bind --mix-weights` takes. Errors: cannot_write.
+Status export_mix(const Model& model, const SharedShares& mix, const std::filesystem::path& path);
 
 } // namespace cagewright::app

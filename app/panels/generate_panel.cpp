@@ -143,6 +143,7 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
     defaults.coordinates = session_.settings().coordinates;
     defaults.coordinate_numbers = session_.settings().coordinate_numbers;
     defaults.beside = session_.settings().beside;
+    defaults.mixed = session_.settings().mixed;
     session_.set_settings(defaults);
   });
   grid->addWidget(defaults_, grid->rowCount(), 1);
@@ -174,6 +175,9 @@ GeneratePanel::GeneratePanel(Session& session, QWidget* parent)
   for (const GenerateOption& option : generate_options()) {
     if (option.group == GenerateOption::Group::binding) {
       add_option(option, follows);
+    }
+    if (option.key == "mix") {
+      add_paint_mix(follows);
     }
   }
 
@@ -222,6 +226,22 @@ void GeneratePanel::add_region(QGridLayout* grid) {
   const int row = grid->rowCount();
   grid->addWidget(label, row, 0);
   grid->addWidget(region_, row, 1, 1, 2); // it has no "?", and the text is long
+}
+
+/// Below the second kind, while there is one.
+void GeneratePanel::add_paint_mix(QGridLayout* grid) {
+  paint_mix_ = new QPushButton(icon("tool_mix"), tr("Paint It"));
+  paint_mix_->setObjectName("paint_mix");
+  paint_mix_->setCheckable(true);
+  paint_mix_->setToolTip(tr("Takes the brush that says where this kind holds: Shift erases, "
+                            "Ctrl+wheel changes its size"));
+  grid->addWidget(paint_mix_, grid->rowCount(), 1, 1, 2);
+  connect(paint_mix_, &QPushButton::clicked, this, [this](bool on) {
+    ToolSettings tools = session_.document().tools();
+    tools.tool = on ? Tool::mix : Tool::translate;
+    session_.document().set_tools(tools);
+  });
+  connect(&session_.document(), &Document::toolsChanged, this, &GeneratePanel::update_options);
 }
 
 void GeneratePanel::show_parts() {
@@ -414,6 +434,10 @@ void GeneratePanel::update_options() {
   for (const auto& [group, title] : titles_) {
     title->setVisible(shown.contains(group));
   }
+  const bool mixes = coordinate_choice(session_.settings()).second.has_value();
+  paint_mix_->setVisible(mixes);
+  paint_mix_->setEnabled(session_.document().has_model());
+  paint_mix_->setChecked(session_.document().tools().tool == Tool::mix);
 }
 
 void GeneratePanel::update_buttons() {
@@ -425,6 +449,7 @@ void GeneratePanel::update_buttons() {
   bind_->setEnabled(free && document.has_model() && document.has_cage());
   bind_->setVisible(!deforming);
   refine_->setVisible(deforming);
+  paint_mix_->setEnabled(document.has_model());
   update_region();
 }
 

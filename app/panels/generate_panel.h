@@ -42,6 +42,7 @@ private:
   Field field_of(const GenerateOption::Choice& choice);
   Field field_of(const GenerateOption::File& file);
   void add_region(QGridLayout* grid);
+  void add_paint_mix(QGridLayout* grid);
   void show_parts(); ///< in the menu of what the cage is for
   void take_part(const NamedPart& part, bool on);
   void update_region();
@@ -60,6 +61,7 @@ private:
   std::vector<Row> rows_;
   std::map<GenerateOption::Group, QLabel*> titles_;
   QToolButton* region_ = nullptr;
+  QPushButton* paint_mix_ = nullptr;
   QToolButton* advanced_ = nullptr;
   QPushButton* defaults_ = nullptr;
   QPushButton* generate_ = nullptr;

@@ -87,6 +87,10 @@ void GuideBar::update_step() {
     say(tr("<b>Step 2 of 5.</b> Paint on the model where the cage is to be finer. Then make "
            "another one (Ctrl+G)."),
         {});
+  } else if (document.mode() == Mode::refine && document.tools().tool == Tool::mix) {
+    say(tr("<b>Step 3 of 5.</b> Paint where the model is to follow by the kind \"Where painted\". "
+           "Then bind it."),
+        tr("Bind"));
   } else if (document.mode() == Mode::refine) {
     say(tr("<b>Step 3 of 5.</b> Edit the cage if you like: it stays a cage while nothing turns "
            "red. Then bind the model to it."),
@@ -94,7 +98,9 @@ void GuideBar::update_step() {
   } else if (document.cage_positions().empty() ||
              std::equal(document.cage_positions().begin(), document.cage_positions().end(),
                         document.cage_rest().positions.begin())) {
-    say(document.tools().tool == Tool::pull ? tr("<b>Step 4 of 5.</b> Drag the model itself: its "
+    say(document.tools().tool == Tool::mix ? tr("<b>Step 4 of 5.</b> Paint where the model is to "
+                                                "follow by the kind \"Where painted\".")
+        : document.tools().tool == Tool::pull ? tr("<b>Step 4 of 5.</b> Drag the model itself: its "
                                                  "cage comes along. A click leaves a "
                                                  "pin that holds it.")
         : document.selection().empty()

@@ -20,7 +20,7 @@ struct Named {
   const char* help;
 };
 
-constexpr std::array<Named, 8> tool_names = {
+constexpr std::array<Named, 9> tool_names = {
     Named{"tool_box", "Box",
           "Drag a box round what to select (B). Shift adds, Shift+Ctrl takes away"},
     Named{"tool_lasso", "Lasso", "Draw round what to select. With any tool: hold Ctrl"},
@@ -35,7 +35,10 @@ constexpr std::array<Named, 8> tool_names = {
           "Ctrl+wheel: size of the brush"},
     Named{"tool_region", "Paint What the Cage Is For",
           "Paint the part of the model that the cage is for; the rest stays where it is. Shift: "
-          "erase, Ctrl: draw round it, Ctrl+wheel: size of the brush"}};
+          "erase, Ctrl: draw round it, Ctrl+wheel: size of the brush"},
+    Named{"tool_mix", "Paint Mix",
+          "Paint where the model follows by the second kind of coordinates, bound or not. Shift: "
+          "erase, Ctrl+wheel: size of the brush"}};
 
 struct Switch {
   Named named;

@@ -127,6 +127,15 @@ Color density_color(float density, const Rgb& model) {
   return color_of(mixed(model, density > 0 ? finer : coarser, std::min(1.0F, std::abs(density))));
 }
 
+Rgb share_rgb(float share, const Rgb& model) {
+  static constexpr Rgb other = {0.93F, 0.52F, 0.08F};
+  return mixed(model, other, std::clamp(share, 0.0F, 1.0F));
+}
+
+Color share_color(float share, const Rgb& model) {
+  return color_of(share_rgb(share, model));
+}
+
 Color distance_color(float distance) {
   constexpr float full = 0.08F;
   return color_of(scale_color(std::min(1.0F, distance / full)));

@@ -29,6 +29,9 @@ constexpr float least_weight = -0.5F;
 /// A color for a painted density: red where the cage is to be finer, blue where coarser, as in
 /// files; the model's own where neither.
 Color density_color(float density, const Rgb& model);
+/// And for the share of another kind of coordinates, from none, the model's own color, to all.
+Rgb share_rgb(float share, const Rgb& model);
+Color share_color(float share, const Rgb& model);
 /// A colour for a distance, a fraction of the diagonal: the same scale, full at 0.08.
 Color distance_color(float distance);
 

@@ -137,9 +137,10 @@ Viewport::Viewport(Editor& editor, QWidget* parent)
     update();
   });
   connect(&document_, &Document::toolsChanged, this, [this] {
-    const bool paints = is_brush(document_.tools().tool);
-    dirty_.colors = dirty_.colors || paints != painted_before_;
-    painted_before_ = paints;
+    const Tool tool = document_.tools().tool;
+    dirty_.colors =
+        dirty_.colors || (tool != tool_before_ && (is_brush(tool) || is_brush(tool_before_)));
+    tool_before_ = tool;
     update_cursor();
     update();
   });
@@ -358,6 +359,12 @@ std::vector<Color> Viewport::model_colors() const {
   const SharedDensity& density = document.state().density;
   if (document.tools().tool == Tool::paint && density && density->size() == vertices) {
     return of(vertices, [&](std::size_t i) { return density_color((*density)[i], colors_.model); });
+  }
+  if (document.tools().tool == Tool::mix) {
+    const SharedShares& mix = document.shown_mix();
+    const bool has_mix = mix && mix->size() == vertices;
+    return of(vertices,
+              [&](std::size_t i) { return share_color(has_mix ? (*mix)[i] : 0, colors_.model); });
   }
   const std::span<const float> weights = document.model_weights();
   const bool shows_weights = document.layers().weights && weights.size() == vertices;

@@ -93,6 +93,7 @@ public:
   void remove_pins();
   /// Takes away what was painted.
   void clear_density();
+  void clear_mix();
 
 Q_SIGNALS:
   void cameraChanged();
@@ -145,6 +146,7 @@ private:
     std::vector<Vec3> targets; ///< of all pins
   };
   struct Stroke {
+    Tool tool = Tool::paint;
     bool chooses = false; ///< the region; then `density` is above 0 there
     bool erases = false;
     bool painted = false; ///< it has met the model
@@ -197,6 +199,8 @@ private:
   [[nodiscard]] std::vector<Pixel> outline() const;
   /// Outlines are round what the cage is for, not round parts of the cage.
   [[nodiscard]] bool outlines_region() const;
+  /// The tool is a brush, and may be used on the model as it is.
+  [[nodiscard]] bool paints_here() const;
   [[nodiscard]] PickOptions pick_options() const;
   [[nodiscard]] Selection selection_of(const Pick& pick) const;
 
@@ -222,6 +226,7 @@ private:
   [[nodiscard]] std::optional<Dab> dab_at(const Pixel& cursor) const;
   bool paint_press(const Qt::KeyboardModifiers& modifiers);
   void add_dabs(bool first);
+  void show_stroke();
   void end_stroke(bool keep);
 
   // Transformations
@@ -245,7 +250,7 @@ private:
   QString failure_; // of OpenGL
   Dirty dirty_;
   Layers layers_before_; // what the last change of layers changed
-  bool painted_before_ = false;
+  Tool tool_before_ = Tool::translate;
   bool shows_beside_ = false;
   bool beside_framed_ = false; // what is beside the model was brought into view
   bool dressed_ = false;       // what the canvas has is the model's dress

@@ -238,9 +238,11 @@ void Viewport::paint_names_beside(QPainter& painter) const {
   const Vec3 middle = document_.model()->box.center();
   const auto name = [&](const Binding& binding, const Vec3& at) {
     if (const std::optional<Projected> seen = camera_.project(at)) {
-      const std::string_view key = binding.settings().kind().name;
-      const QString label =
-          label_of_coordinates(QString::fromUtf8(key.data(), static_cast<qsizetype>(key.size())));
+      const CoordinateChoice& choice = binding.choice();
+      QString label = label_of_coordinates(choice.first);
+      if (choice.mixes()) {
+        label = tr("%1 and %2").arg(label, label_of_coordinates(*choice.second).toLower());
+      }
       painter.drawText(QRectF(seen->pixel.x() - 120, height() - 34, 240, 20), Qt::AlignCenter,
                        label);
     }
@@ -252,9 +254,10 @@ void Viewport::paint_names_beside(QPainter& painter) const {
 
 void Viewport::paint_legend(QPainter& painter) const {
   const Layers& layers = document_.layers();
-  const bool weights = layers.weights && !document_.model_weights().empty();
+  const bool mix = document_.tools().tool == Tool::mix && document_.has_model();
+  const bool weights = !mix && layers.weights && !document_.model_weights().empty();
   const bool distance = layers.distance && !document_.cage_distances().empty();
-  if (!weights && !distance) {
+  if (!mix && !weights && !distance) {
     return;
   }
   const QRectF bar(width() - 192, height() - 34, 170, 10);
@@ -263,25 +266,30 @@ void Viewport::paint_legend(QPainter& painter) const {
   for (int i = 0; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
     const auto weight = static_cast<float>(least_weight + t * (1 - least_weight));
-    gradient.setColorAt(t, qt(weights ? weight_rgb(weight) : scale_color(t)));
+    gradient.setColorAt(t, qt(mix       ? share_rgb(static_cast<float>(t), colors_.model)
+                              : weights ? weight_rgb(weight)
+                                        : scale_color(t)));
   }
   painter.save();
   painter.setPen(QPen(qt(colors_.text, 0.5), 1));
   painter.setBrush(gradient);
   painter.drawRect(bar);
   painter.setPen(qt(colors_.text, 0.85));
-  const QRectF above = bar.adjusted(-40, -20, 0, -12);
-  painter.drawText(above, Qt::AlignRight | Qt::AlignVCenter,
-                   weights ? tr("weight of the selection") : tr("distance to the model"));
-  const QRectF below = bar.adjusted(0, 11, 0, 19);
-  painter.drawText(below, Qt::AlignLeft | Qt::AlignVCenter,
-                   weights ? locale().toString(least_weight, 'g', 2) : "0");
-  painter.drawText(below, Qt::AlignRight | Qt::AlignVCenter,
-                   weights ? "1" : tr("8 % of the diagonal"));
-  if (weights) {
+  const auto say = [&](const QString& what, const QString& least, const QString& most) {
+    painter.drawText(bar.adjusted(-120, -20, 0, -12), Qt::AlignRight | Qt::AlignVCenter, what);
+    const QRectF below = bar.adjusted(-60, 11, 0, 19);
+    painter.drawText(below.adjusted(60, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter, least);
+    painter.drawText(below, Qt::AlignRight | Qt::AlignVCenter, most);
+  };
+  if (mix) {
+    say(tr("share of what is painted"), "0", "1");
+  } else if (weights) {
+    say(tr("weight of the selection"), locale().toString(least_weight, 'g', 2), "1");
     const double zero = bar.left() - least_weight / (1 - least_weight) * bar.width();
     painter.drawLine(QPointF(zero, bar.top()), QPointF(zero, bar.bottom()));
-    painter.drawText(QRectF(zero - 20, below.top(), 40, below.height()), Qt::AlignCenter, "0");
+    painter.drawText(QRectF(zero - 20, bar.top() + 11, 40, bar.height() + 8), Qt::AlignCenter, "0");
+  } else {
+    say(tr("distance to the model"), "0", tr("8 % of the diagonal"));
   }
   painter.restore();
 }

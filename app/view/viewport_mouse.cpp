@@ -84,6 +84,11 @@ void Viewport::finish_outline(Qt::KeyboardModifiers modifiers) {
   update();
 }
 
+bool Viewport::paints_here() const {
+  return is_brush(document_.tools().tool) &&
+         (document_.mode() == Mode::refine || document_.tools().tool == Tool::mix);
+}
+
 void Viewport::forget_hover() {
   hovered_.reset();
   hovered_handle_ = Handle::none;
@@ -121,7 +126,7 @@ void Viewport::hover(const Pixel& cursor) {
   if (is_brush(document_.tools().tool)) {
     update(); // the brush goes along
   }
-  const bool paints = is_brush(document_.tools().tool) && document_.mode() == Mode::refine;
+  const bool paints = paints_here();
   if (document_.has_cage() && !drag_.is_active() && !paints) {
     refresh_graph();
     if (const std::optional<GizmoFrame> frame = gizmo()) {
@@ -138,6 +143,9 @@ void Viewport::hover(const Pixel& cursor) {
   }
   if (document_.tools().tool == Tool::paint && document_.has_model()) {
     Q_EMIT hint(tr("Paint: the cage becomes finer here \u00b7 Ctrl: coarser \u00b7 Shift: erase "
+                   "\u00b7 Ctrl+wheel: size of the brush"));
+  } else if (document_.tools().tool == Tool::mix && document_.has_model()) {
+    Q_EMIT hint(tr("Paint where the model follows by the kind \"Where painted\" \u00b7 Shift: erase "
                    "\u00b7 Ctrl+wheel: size of the brush"));
   } else if (document_.tools().tool == Tool::region && document_.has_model()) {
     Q_EMIT hint(tr("Paint what the cage is for \u00b7 Shift: erase \u00b7 Ctrl: lasso, B: box "

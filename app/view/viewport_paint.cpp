@@ -2,6 +2,7 @@
 #include "app/view/viewport.h"
 
 #include "app/edit/density_brush.h"
+#include "app/edit/surface_pick.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,25 +16,40 @@ constexpr double whole = 1e6; // of a brush that knows no half
 
 } // namespace
 
-/// What of the model lies under the brush.
+/// What of the model lies under the brush, as it is shown.
 std::optional<Dab> Viewport::dab_at(const Pixel& cursor) const {
   if (!document_.has_model()) {
     return std::nullopt;
   }
   const Model& model = *document_.model();
+  const std::span<const Vec3> positions = document_.model_positions();
+  const std::span<const Vec3> normals = document_.model_normals();
   const Ray sight = camera_.ray(cursor);
-  const RayHit hit = model.bvh.first_hit(sight.origin, sight.direction);
-  if (!hit) {
-    return std::nullopt;
-  }
-  const auto& [a, b, c] = model.bvh.corners(hit.triangle);
+  Triangle corners;
   Dab dab;
-  dab.place = sight.at(hit.distance);
-  const Vec3 normal = (b - a).cross(c - a);
+  if (document_.deformed()) {
+    // A stroke has many dabs: of large models the fewer triangles are near enough.
+    const bool quick = !model.coarse.empty();
+    const std::span<const Triangle> triangles =
+        quick ? document_.coarse_triangles() : document_.model_triangles();
+    const auto hit = first_surface_point({positions, triangles}, sight);
+    if (!hit) {
+      return std::nullopt;
+    }
+    corners = triangles[hit->triangle];
+    dab.place = sight.at(hit->distance);
+  } else {
+    const RayHit hit = model.bvh.first_hit(sight.origin, sight.direction);
+    if (!hit) {
+      return std::nullopt;
+    }
+    corners = model.triangles[hit.triangle];
+    dab.place = sight.at(hit.distance);
+  }
+  const Vec3& a = positions[corners[0]];
+  const Vec3 normal = (positions[corners[1]] - a).cross(positions[corners[2]] - a);
   // Normals of the model's vertices need not look outward: the side is theirs.
-  const Triangle& corners = model.triangles[hit.triangle];
-  const Vec3 of_corners =
-      model.normals[corners[0]] + model.normals[corners[1]] + model.normals[corners[2]];
+  const Vec3 of_corners = normals[corners[0]] + normals[corners[1]] + normals[corners[2]];
   dab.normal = of_corners.norm() > 0 ? Vec3(of_corners.normalized())
                : normal.norm() > 0   ? Vec3(normal.normalized())
                                      : camera_.to_viewer(dab.place);
@@ -42,10 +58,11 @@ std::optional<Dab> Viewport::dab_at(const Pixel& cursor) const {
 }
 
 bool Viewport::paint_press(const Qt::KeyboardModifiers& modifiers) {
-  if (!is_brush(document_.tools().tool) || !document_.has_model()) {
+  const Tool tool = document_.tools().tool;
+  if (!is_brush(tool) || !document_.has_model()) {
     return false;
   }
-  if (document_.mode() == Mode::deform) {
+  if (document_.mode() == Mode::deform && tool != Tool::mix) {
     Q_EMIT editor_.message(tr("go back to refining first: the next cage is made for the model at "
                               "rest"));
     return true;
@@ -55,18 +72,20 @@ bool Viewport::paint_press(const Qt::KeyboardModifiers& modifiers) {
   }
   editor_.begin_step(); // the stroke may come from beside the model
   stroke_.emplace();
-  stroke_->chooses = document_.tools().tool == Tool::region;
+  stroke_->tool = tool;
+  stroke_->chooses = tool == Tool::region;
   stroke_->erases = modifiers.testFlag(Qt::ShiftModifier);
   stroke_->sign = modifiers.testFlag(Qt::ControlModifier) ? -1 : 1;
   stroke_->last = cursor_;
-  const SharedDensity& before = document_.state().density;
+  const State& state = document_.state();
+  const auto& before = tool == Tool::mix ? state.mix : state.density;
   if (before && !stroke_->chooses) {
     stroke_->density = *before;
   } else {
     stroke_->density.assign(document_.model_positions().size(), 0.0F);
   }
-  if (const auto& region = document_.state().region; region && stroke_->chooses) {
-    for (const Index v : region->vertices) {
+  if (state.region && stroke_->chooses) {
+    for (const Index v : state.region->vertices) {
       stroke_->density[v] = 1;
     }
   }
@@ -82,7 +101,6 @@ void Viewport::add_dabs(bool first) {
   const double step = std::max(1.0, tools.brush_radius / 4);
   const Pixel way = cursor_ - stroke_->last;
   const int count = first ? 1 : static_cast<int>(way.norm() / step);
-  const Model& model = *document_.model();
   std::vector<Dab> dabs;
   for (int i = 1; i <= count; ++i) {
     const Pixel at = first ? cursor_ : Pixel(stroke_->last + way * (i * step / way.norm()));
@@ -93,41 +111,71 @@ void Viewport::add_dabs(bool first) {
       dabs.push_back(*dab);
     }
   }
-  if (!dabs.empty()) {
-    paint_dabs(dabs, model.mesh.positions, model.normals, stroke_->density);
-    stroke_->painted = true;
-  }
   if (count > 0 && !first) {
     stroke_->last += way * (count * step / way.norm());
   }
-  if (!dabs.empty() && stroke_->chooses) {
-    dirty_.colors = true;
-  } else if (!dabs.empty()) {
-    document_.set_density(std::make_shared<const std::vector<float>>(stroke_->density));
+  if (!dabs.empty()) {
+    paint_dabs(dabs, document_.model_positions(), document_.model_normals(), stroke_->density,
+               stroke_->tool == Tool::mix ? 0.0F : -1.0F);
+    stroke_->painted = true;
+    show_stroke();
   }
   update();
+}
+
+void Viewport::show_stroke() {
+  switch (stroke_->tool) {
+  case Tool::region:
+    dirty_.colors = true;
+    break;
+  case Tool::mix:
+    document_.show_mix(std::make_shared<const std::vector<float>>(stroke_->density));
+    break;
+  default:
+    document_.set_density(std::make_shared<const std::vector<float>>(stroke_->density));
+  }
 }
 
 void Viewport::end_stroke(bool keep) {
   if (!stroke_) {
     return;
   }
-  const Stroke stroke = *std::exchange(stroke_, std::nullopt);
+  Stroke stroke = *std::exchange(stroke_, std::nullopt);
   gesture_ = Gesture::none;
-  if (stroke.chooses) {
-    editor_.cancel_step();
-    dirty_.colors = true;
-    if (keep && stroke.painted) {
-      std::vector<char> chosen(stroke.density.size());
-      std::ranges::transform(stroke.density, chosen.begin(), [](float d) { return d > 0 ? 1 : 0; });
-      Q_EMIT regionPainted(faces_within(document_.model()->mesh, chosen));
-    }
-  } else if (keep && stroke.painted) {
+  if (stroke.tool == Tool::paint && keep && stroke.painted) {
     editor_.end_step(tr("Paint Density"));
-  } else {
-    editor_.cancel_step();
+    update();
+    return;
   }
+  editor_.cancel_step();
+  if (stroke.tool == Tool::mix) {
+    document_.show_mix(nullptr);
+  }
+  const bool fits = document_.has_model() &&
+                    stroke.density.size() == document_.model()->mesh.positions.size();
+  if (keep && stroke.painted && fits && stroke.tool == Tool::mix) {
+    // As files of projects keep it, so that the model follows alike when one is opened again.
+    bool any = false;
+    for (float& share : stroke.density) {
+      share = std::round(100 * share) / 100;
+      any = any || share > 0;
+    }
+    editor_.set_mix(
+        any ? std::make_shared<const std::vector<float>>(std::move(stroke.density)) : nullptr,
+        tr("Paint Mix"));
+  } else if (keep && stroke.painted && fits && stroke.chooses) {
+    std::vector<char> chosen(stroke.density.size());
+    std::ranges::transform(stroke.density, chosen.begin(), [](float d) { return d > 0 ? 1 : 0; });
+    Q_EMIT regionPainted(faces_within(document_.model()->mesh, chosen));
+  }
+  dirty_.colors = true;
   update();
+}
+
+void Viewport::clear_mix() {
+  if (document_.state().mix && !stroke_) {
+    editor_.set_mix(nullptr, tr("Clear Painted Mix"));
+  }
 }
 
 void Viewport::clear_density() {

@@ -36,30 +36,35 @@ Result<Deformer> Deformer::bind(const PolygonMesh& model, const PolygonMesh& cag
   if (!coordinates) {
     return coordinates.error();
   }
-  const Progress solving = progress.part(0.5, 1);
+  return bind(model, **coordinates, options, std::move(slots), progress.part(0.5, 1));
+}
+
+Result<Deformer> Deformer::bind(const PolygonMesh& model, const Coordinates& coordinates,
+                                const DeformerOptions& options, std::optional<NormalSlots> slots,
+                                const Progress& progress) {
   const auto make = [&](auto solved, auto&& keep) -> Result<Deformer> {
     if (!solved) {
       return solved.error();
     }
-    Deformer deformer(model, (*coordinates)->rule(), keep(std::move(solved->weights)), options,
+    Deformer deformer(model, coordinates.rule(), keep(std::move(solved->weights)), options,
                       std::move(slots));
     deformer.unbound_ = solved->counts.undefined;
-    if ((*coordinates)->outside() == OutsideTreatment::rest) {
+    if (coordinates.outside() == OutsideTreatment::rest) {
       deformer.unbound_ += solved->counts.outside;
     }
     return deformer;
   };
   switch (options.storage) {
   case WeightStorage::full:
-    return make(solve_all<double>(**coordinates, model.positions, solving),
+    return make(solve_all<double>(coordinates, model.positions, progress),
                 [](Weights weights) { return Storage(std::move(weights)); });
   case WeightStorage::compact:
-    return make(solve_compact(**coordinates, model.positions, solving),
+    return make(solve_compact(coordinates, model.positions, progress),
                 [](CompactWeights weights) { return Storage(std::move(weights)); });
   case WeightStorage::single:
     break;
   }
-  return make(solve_all<float>(**coordinates, model.positions, solving),
+  return make(solve_all<float>(coordinates, model.positions, progress),
               [](FloatWeights weights) { return Storage(std::move(weights)); });
 }
 

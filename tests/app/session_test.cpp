@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 #include <variant>
 
 namespace cagewright::app {
@@ -774,6 +775,66 @@ TEST_F(SessionTest, KeepsTheMixOfPosesAndWhatWasPainted) {
   EXPECT_EQ(session_.settings().density, DensitySource::painted);
   session_.editor().mix_pose(0, 1);
   EXPECT_EQ(cage(), *session_.document().state().poses[0].positions);
+}
+
+TEST_F(SessionTest, BindsTheRegionByTwoKindsAndKeepsWhatIsPaintedInRange) {
+  session_.open(path("model.obj"), path("cage.obj"));
+  wait();
+  const std::size_t count = session_.document().model()->mesh.positions.size();
+  std::vector<Index> half(session_.document().model()->mesh.face_count() / 2);
+  std::iota(half.begin(), half.end(), Index{0});
+  session_.choose_region("half", half);
+  wait();
+  std::vector<float> painted(count, 0.0F);
+  for (std::size_t v = 0; v < count / 3; ++v) {
+    painted[v] = 0.5F;
+  }
+  session_.editor().set_mix(std::make_shared<const std::vector<float>>(painted), "Paint");
+  GenerateSettings settings = session_.settings();
+  settings.mixed = "harmonic";
+  session_.set_settings(settings);
+  session_.bind(Session::Doubts::ignore);
+  wait();
+  ASSERT_TRUE(failures_.empty()) << failures_.front();
+  ASSERT_EQ(session_.document().mode(), Mode::deform);
+  EXPECT_EQ(session_.document().state().binding->settings().name(), "mean_value+harmonic");
+  drag(0, Vec3(0.3, 0, 0));
+  const std::vector<Vec3> moved = shown_model();
+  session_.export_model(path("out.obj"));
+  wait();
+  const auto out = read_mesh(path("out.obj"));
+  ASSERT_TRUE(out);
+  EXPECT_LT(greatest_distance(out->positions, moved), 1e-5);
+  ASSERT_TRUE(session_.save_project(path("half.cagewright")));
+
+  // A share of -0.5 is none.
+  Project project = *read_project(path("half.cagewright"));
+  ASSERT_TRUE(project.state.mix);
+  EXPECT_EQ(*project.state.mix, painted);
+  std::vector<float> wrong = painted;
+  wrong[0] = -0.5F;
+  project.state.mix = std::make_shared<const std::vector<float>>(wrong);
+  ASSERT_TRUE(write_project(project, path("wrong.cagewright")));
+  const Result<Project> read = read_project(path("wrong.cagewright"));
+  ASSERT_TRUE(read);
+  EXPECT_FALSE(read->state.mix);
+  ASSERT_EQ(read->notes.size(), 1U);
+  EXPECT_NE(read->notes[0].find("painted"), std::string::npos) << read->notes[0];
+}
+
+TEST_F(SessionTest, SaysWhichKindsCannotBeMixed) {
+  GenerateSettings settings = session_.settings();
+  settings.coordinates = "somigliana";
+  session_.set_settings(settings);
+  open_and_bind();
+  settings.coordinate_numbers["local"] = 0.5;
+  settings.mixed = "green";
+  session_.set_settings(settings);
+  wait();
+  ASSERT_EQ(failures_.size(), 1U);
+  EXPECT_NE(failures_[0].find("local"), std::string::npos) << failures_[0];
+  EXPECT_EQ(session_.settings().mixed, "") << "what is bound is shown";
+  EXPECT_EQ(session_.document().mode(), Mode::deform);
 }
 
 TEST_F(SessionTest, ExportsASequenceAlongTheKeyframes) {

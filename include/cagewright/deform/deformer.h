@@ -4,6 +4,7 @@
 
 #include <cagewright/coordinates/columns.h>
 #include <cagewright/coordinates/compact_weights.h>
+#include <cagewright/coordinates/coordinates.h>
 #include <cagewright/coordinates/kinds.h>
 #include <cagewright/coordinates/weights.h>
 #include <cagewright/core/progress.h>
@@ -49,6 +50,14 @@ public:
   /// \param slots  which corners of the model share a normal; none: smooth everywhere
   /// Errors: invalid_cage, cancelled.
   static Result<Deformer> bind(const PolygonMesh& model, const PolygonMesh& cage,
+                               const DeformerOptions& options = {},
+                               std::optional<NormalSlots> slots = {},
+                               const Progress& progress = {});
+
+  /// The same by coordinates that were prepared before, such as two kinds mixed: see mixed.h.
+  /// `options.coordinates` is not looked at.
+  /// Errors: invalid_cage (points outside that the kind refuses), cancelled.
+  static Result<Deformer> bind(const PolygonMesh& model, const Coordinates& coordinates,
                                const DeformerOptions& options = {},
                                std::optional<NormalSlots> slots = {},
                                const Progress& progress = {});

@@ -16,9 +16,11 @@
 #include <QWheelEvent>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numeric>
 
 namespace cagewright::app {
 namespace {
@@ -249,7 +251,7 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
       Qt::Key_Left,   Qt::Key_C,      Qt::Key_BracketLeft, Qt::Key_BracketRight,
       Qt::Key_O,      Qt::Key_B,      Qt::Key_L,           Qt::Key_M,
       Qt::Key_Tab,    Qt::Key_H,      Qt::Key_Slash,       Qt::Key_W,
-      Qt::Key_Q};
+      Qt::Key_Q,      Qt::Key_F3,     Qt::Key_Backslash,   Qt::Key_Y};
   const std::vector<Qt::KeyboardModifiers> modifiers = {
       Qt::NoModifier, Qt::NoModifier, Qt::ShiftModifier, Qt::ControlModifier, Qt::AltModifier};
   const std::vector<Qt::MouseButton> mouse_buttons = {
@@ -279,7 +281,7 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
                    static_cast<int>(pick(static_cast<std::size_t>(view().height()))));
     const QPoint b(static_cast<int>(pick(static_cast<std::size_t>(view().width()))),
                    static_cast<int>(pick(static_cast<std::size_t>(view().height()))));
-    switch (pick(12)) {
+    switch (pick(16)) {
     case 0:
     case 1:
       drag(a, b, modifiers[pick(modifiers.size())], mouse_buttons[pick(mouse_buttons.size())]);
@@ -302,8 +304,34 @@ TEST_F(Window, SurvivesFiveHundredRandomActions) {
       break;
     }
     case 10: {
-      auto* box = find<QComboBox>(pick(3) == 0 ? "coordinates" : "look");
+      const std::array<const char*, 4> names = {"coordinates", "mix", "beside", "look"};
+      auto* box = find<QComboBox>(names[pick(names.size())]);
       box->setCurrentIndex(static_cast<int>(pick(static_cast<std::size_t>(box->count()))));
+      break;
+    }
+    case 12: { // a stroke of a brush, or a lasso round a part of the model
+      const std::array<const char*, 4> tools = {"tool_mix", "tool_paint", "tool_region",
+                                                "tool_lasso"};
+      trigger(tools[pick(tools.size())]);
+      drag(a, b, modifiers[pick(modifiers.size())]);
+      break;
+    }
+    case 13: { // what the cage is for
+      const std::size_t faces = document().model()->mesh.face_count();
+      std::vector<Index> some(1 + pick(faces));
+      std::iota(some.begin(), some.end(), Index{0});
+      pick(2) == 0 ? session().choose_region("some", some) : session().choose_whole_model();
+      break;
+    }
+    case 14: { // any command, by a few letters
+      press(Qt::Key_F3);
+      if (auto* search = window->findChild<QDialog*>("command_search")) {
+        for (std::size_t n = pick(4); n > 0; --n) {
+          QTest::keyClick(search->findChild<QLineEdit*>(),
+                          static_cast<Qt::Key>(Qt::Key_A + static_cast<int>(pick(26))));
+        }
+        search->close(); // it might run what asks for a file
+      }
       break;
     }
     case 11:
