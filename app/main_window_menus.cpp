@@ -206,14 +206,13 @@ void MainWindow::make_file_menu() {
                           tr("NumPy archives (*.npz)"),
                           [this](const auto& path) { session_.export_weights(path); });
           });
-  QAction* mix =
-      add(more, "export_mix", tr("Mi&x Weights..."), {},
-          tr("What is painted for another kind of coordinates: for cagewright bind --mix-weights"),
-          [this] {
-            choose_export(tr("Export Mix Weights"), suggested("-mix", ".txt"),
-                          tr("Numbers (*.txt)"),
-                          [this](const auto& path) { session_.export_mix(path); });
-          });
+  QAction* mix = add(
+      more, "export_mix", tr("Mi&x Weights..."), {},
+      tr("What is painted for another kind of coordinates: for cagewright bind --mix-weights"),
+      [this] {
+        choose_export(tr("Export Mix Weights"), suggested("-mix", ".txt"), tr("Numbers (*.txt)"),
+                      [this](const auto& path) { session_.export_mix(path); });
+      });
   needs_.push_back({mix, [this] { return session_.document().state().mix != nullptr; }});
   add(more, "export_image", tr("&Image of the View..."), {}, tr("A picture of what is shown"),
       [this] { export_image(); });

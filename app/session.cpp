@@ -179,8 +179,7 @@ void Session::bind_anew() {
     kinds = state.binding->kinds();
   }
   Job::Work work = [this, caged = document_.caged(), rest = state.rest, before = state.binding,
-                    choice, is_painted,
-                    kinds](const Progress& progress) -> Result<Job::Apply> {
+                    choice, is_painted, kinds](const Progress& progress) -> Result<Job::Apply> {
     Result<std::shared_ptr<const Binding>> binding =
         bind_model(caged, *rest, choice, progress, kinds);
     if (!binding) {
@@ -1058,8 +1057,7 @@ void Session::export_animation(const fs::path& path) {
       title,
       [this, path, files, caged = document_.caged(), binding = document_.state().binding,
        line = document_.state().time_line](const Progress& progress) -> Result<Job::Apply> {
-        if (Status s =
-                app::export_animation(caged, binding->coordinates(), line, path, progress);
+        if (Status s = app::export_animation(caged, binding->coordinates(), line, path, progress);
             !s) {
           return s.error();
         }

@@ -196,7 +196,7 @@ private:
     Job::Work work;
     Kind kind;
   };
-  std::optional<Waiting> waiting_;           // for the job under way to end
+  std::optional<Waiting> waiting_;          // for the job under way to end
   std::optional<SharedShares> unbound_mix_; // painted, and being bound
 };
 

@@ -252,7 +252,8 @@ void Editor::renew_binding(const std::shared_ptr<const Binding>& binding) {
   };
   for (int i = 0; i < undo_stack_.count(); ++i) {
     // All are ours; Qt shows them as const so that nobody changes what they do.
-    if (auto* step = dynamic_cast<ChangeState*>(const_cast<QUndoCommand*>(undo_stack_.command(i)))) {
+    if (auto* step =
+            dynamic_cast<ChangeState*>(const_cast<QUndoCommand*>(undo_stack_.command(i)))) {
       step->replace_binding(before, binding);
     }
   }

@@ -236,8 +236,8 @@ void Document::set_state(const State& state) {
   const State old = std::exchange(state_, state);
   cut_to(state_.selection, state_.rest.get());
   // Bound by other coordinates it is where it was until those have moved it.
-  const bool is_bound_anew = state_.binding && old.binding && state_.rest == old.rest &&
-                             state_.region == old.region;
+  const bool is_bound_anew =
+      state_.binding && old.binding && state_.rest == old.rest && state_.region == old.region;
   if (state_.binding != old.binding) {
     if (!is_bound_anew) {
       comparing_ = false;

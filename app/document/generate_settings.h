@@ -90,7 +90,8 @@ const std::vector<GenerateOption>& generate_options();
 QString label_of_coordinates(const QString& name);
 QString label_of_coordinates(const CoordinateSettings& settings);
 /// The kinds that the settings name, with their numbers; the second where `painted` says so.
-CoordinateChoice coordinate_choice(const GenerateSettings& settings, SharedShares painted = nullptr);
+CoordinateChoice coordinate_choice(const GenerateSettings& settings,
+                                   SharedShares painted = nullptr);
 /// The other way round, but for what is painted.
 void take_coordinates(const CoordinateChoice& bound, GenerateSettings& settings);
 

@@ -536,7 +536,8 @@ Result<Project> parse_project(const QByteArray& bytes, const fs::path& path) {
   };
   project.state.density = painted("density", -1, "the painted density");
   project.state.mix = painted("mix", 0, "what is painted for another kind of coordinates");
-  if (project.state.mix && std::ranges::all_of(*project.state.mix, [](float s) { return s == 0; })) {
+  if (project.state.mix &&
+      std::ranges::all_of(*project.state.mix, [](float s) { return s == 0; })) {
     project.state.mix.reset();
   }
   project.settings = generate_settings_from_json(json["generate"].toObject());

@@ -28,8 +28,7 @@ void touch(const Dab& dab, const Vec3& place, const Vec3* normal, float least, f
 } // namespace
 
 void paint_dabs(std::span<const Dab> dabs, std::span<const Vec3> positions,
-                std::span<const Vec3> normals, std::vector<float>& painted,
-                float least) {
+                std::span<const Vec3> normals, std::vector<float>& painted, float least) {
   Box3 box; // of all dabs: most of a model is beside them
   for (const Dab& dab : dabs) {
     box.extend(Vec3(dab.place.array() - dab.radius));

@@ -207,8 +207,8 @@ Result<std::shared_ptr<const Coordinates>> prepare(const CagedModel& caged, cons
       return rule.error();
     }
   }
-  const auto make = [&](std::shared_ptr<const Coordinates>& kind, const CoordinateSettings& settings,
-                        const Progress& part) -> Status {
+  const auto make = [&](std::shared_ptr<const Coordinates>& kind,
+                        const CoordinateSettings& settings, const Progress& part) -> Status {
     if (!kind) {
       auto made = prepare_coordinates(cage, settings, part);
       if (!made) {
@@ -313,8 +313,7 @@ fs::path path_of_part(const Model& model, std::size_t part, const fs::path& path
           path.extension().string());
 }
 
-Result<std::vector<FileNote>> export_models(const CagedModel& caged,
-                                            const Coordinates& coordinates,
+Result<std::vector<FileNote>> export_models(const CagedModel& caged, const Coordinates& coordinates,
                                             const std::vector<ModelOutput>& outputs,
                                             const Progress& progress) {
   std::vector<std::vector<Vec3>> poses;

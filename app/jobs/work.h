@@ -44,9 +44,10 @@ Result<std::shared_ptr<const PolygonMesh>> read_cage(const std::filesystem::path
 /// Binds what the cage is for. Weights that would take more than 1.5 GB are kept in 16 bits.
 /// \param prepared  of the same cage, by the same kinds; what is not there is made
 /// Errors: those of Deformer::bind(), prepare_coordinates() and mixed_rule().
-Result<std::shared_ptr<const Binding>>
-bind_model(const CagedModel& caged, const PolygonMesh& cage, const CoordinateChoice& choice = {},
-           const Progress& progress = {}, PreparedKinds prepared = {});
+Result<std::shared_ptr<const Binding>> bind_model(const CagedModel& caged, const PolygonMesh& cage,
+                                                  const CoordinateChoice& choice = {},
+                                                  const Progress& progress = {},
+                                                  PreparedKinds prepared = {});
 
 struct JudgedCage {
   std::shared_ptr<const ValidityReport> report;

@@ -230,13 +230,17 @@ void GeneratePanel::add_region(QGridLayout* grid) {
 
 /// Below the second kind, while there is one.
 void GeneratePanel::add_paint_mix(QGridLayout* grid) {
-  paint_mix_ = new QPushButton(icon("tool_mix"), tr("Paint It"));
+  paint_mix_ = new QToolButton;
+  paint_mix_->setIcon(icon("tool_mix"));
+  paint_mix_->setText(tr("Paint It"));
   paint_mix_->setObjectName("paint_mix");
   paint_mix_->setCheckable(true);
+  paint_mix_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  paint_mix_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   paint_mix_->setToolTip(tr("Takes the brush that says where this kind holds: Shift erases, "
                             "Ctrl+wheel changes its size"));
   grid->addWidget(paint_mix_, grid->rowCount(), 1, 1, 2);
-  connect(paint_mix_, &QPushButton::clicked, this, [this](bool on) {
+  connect(paint_mix_, &QToolButton::clicked, this, [this](bool on) {
     ToolSettings tools = session_.document().tools();
     tools.tool = on ? Tool::mix : Tool::translate;
     session_.document().set_tools(tools);

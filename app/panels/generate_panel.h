@@ -61,7 +61,7 @@ private:
   std::vector<Row> rows_;
   std::map<GenerateOption::Group, QLabel*> titles_;
   QToolButton* region_ = nullptr;
-  QPushButton* paint_mix_ = nullptr;
+  QToolButton* paint_mix_ = nullptr;
   QToolButton* advanced_ = nullptr;
   QPushButton* defaults_ = nullptr;
   QPushButton* generate_ = nullptr;

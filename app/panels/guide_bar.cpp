@@ -101,8 +101,8 @@ void GuideBar::update_step() {
     say(document.tools().tool == Tool::mix ? tr("<b>Step 4 of 5.</b> Paint where the model is to "
                                                 "follow by the kind \"Where painted\".")
         : document.tools().tool == Tool::pull ? tr("<b>Step 4 of 5.</b> Drag the model itself: its "
-                                                 "cage comes along. A click leaves a "
-                                                 "pin that holds it.")
+                                                   "cage comes along. A click leaves a "
+                                                   "pin that holds it.")
         : document.selection().empty()
             ? tr("<b>Step 4 of 5.</b> Click a vertex of the cage. Shift adds more.")
             : tr("<b>Step 4 of 5.</b> Drag an arrow of the gizmo, or press G and move the mouse: "

@@ -145,8 +145,9 @@ void Viewport::hover(const Pixel& cursor) {
     Q_EMIT hint(tr("Paint: the cage becomes finer here \u00b7 Ctrl: coarser \u00b7 Shift: erase "
                    "\u00b7 Ctrl+wheel: size of the brush"));
   } else if (document_.tools().tool == Tool::mix && document_.has_model()) {
-    Q_EMIT hint(tr("Paint where the model follows by the kind \"Where painted\" \u00b7 Shift: erase "
-                   "\u00b7 Ctrl+wheel: size of the brush"));
+    Q_EMIT hint(
+        tr("Paint where the model follows by the kind \"Where painted\" \u00b7 Shift: erase "
+           "\u00b7 Ctrl+wheel: size of the brush"));
   } else if (document_.tools().tool == Tool::region && document_.has_model()) {
     Q_EMIT hint(tr("Paint what the cage is for \u00b7 Shift: erase \u00b7 Ctrl: lasso, B: box "
                    "\u00b7 Ctrl+wheel: size of the brush"));

@@ -151,8 +151,8 @@ void Viewport::end_stroke(bool keep) {
   if (stroke.tool == Tool::mix) {
     document_.show_mix(nullptr);
   }
-  const bool fits = document_.has_model() &&
-                    stroke.density.size() == document_.model()->mesh.positions.size();
+  const bool fits =
+      document_.has_model() && stroke.density.size() == document_.model()->mesh.positions.size();
   if (keep && stroke.painted && fits && stroke.tool == Tool::mix) {
     // As files of projects keep it, so that the model follows alike when one is opened again.
     bool any = false;
@@ -160,9 +160,9 @@ void Viewport::end_stroke(bool keep) {
       share = std::round(100 * share) / 100;
       any = any || share > 0;
     }
-    editor_.set_mix(
-        any ? std::make_shared<const std::vector<float>>(std::move(stroke.density)) : nullptr,
-        tr("Paint Mix"));
+    editor_.set_mix(any ? std::make_shared<const std::vector<float>>(std::move(stroke.density))
+                        : nullptr,
+                    tr("Paint Mix"));
   } else if (keep && stroke.painted && fits && stroke.chooses) {
     std::vector<char> chosen(stroke.density.size());
     std::ranges::transform(stroke.density, chosen.begin(), [](float d) { return d > 0 ? 1 : 0; });

@@ -83,9 +83,9 @@ TEST_F(CageFaults, OutlinesSelectEveryFaceThatIsSeenHoweverCrooked) {
         << "what is hidden is left alone";
 
     press_at_focus(Qt::Key_A, Qt::AltModifier);
-    const std::array<QPoint, 5> way = {
-        QPoint(2, 2), QPoint(view().width() - 3, 2), QPoint(view().width() - 3, view().height() - 3),
-        QPoint(2, view().height() - 3), QPoint(2, 4)};
+    const std::array<QPoint, 5> way = {QPoint(2, 2), QPoint(view().width() - 3, 2),
+                                       QPoint(view().width() - 3, view().height() - 3),
+                                       QPoint(2, view().height() - 3), QPoint(2, 4)};
     test::move_mouse(view(), way[0]);
     QTest::mousePress(&view(), Qt::LeftButton, Qt::ControlModifier, way[0]);
     for (const QPoint& place : way) {

@@ -160,12 +160,10 @@ TEST_F(Mixing, IsKeptInProjectsAndWritten) {
 
   with_file(path("shares.txt"), [this] { trigger("export_mix"); });
   wait_for_job();
-  const auto shares =
-      read_vertex_weights(path("shares.txt").toStdString(), painted->size());
+  const auto shares = read_vertex_weights(path("shares.txt").toStdString(), painted->size());
   ASSERT_TRUE(shares);
-  EXPECT_TRUE(std::ranges::equal(*shares, *painted, [](double a, float b) {
-    return static_cast<float>(a) == b;
-  }));
+  EXPECT_TRUE(std::ranges::equal(*shares, *painted,
+                                 [](double a, float b) { return static_cast<float>(a) == b; }));
   with_file(path("weights.npz"), [this] { trigger("export_weights"); });
   wait_for_job();
   const auto stored = read_weights(path("weights.npz").toStdString());
