@@ -425,6 +425,35 @@ TEST_P(EveryKind, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(on(1), on(4));
 }
 
+/// With what is prepared for the cage. Processors that multiply and add in one round alike, but for
+/// kinds that divide by approximations.
+TEST_P(EveryKind, AgreesOnProcessorsOfOtherInstructions) {
+  const std::vector<Vec3> points = points_inside(make_l(), 6, 59);
+  const auto weights_on = [&](std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    const Made made = make(make_l());
+    std::vector<double> all;
+    for (const Vec3& x : points) {
+      const std::vector<double> own = made ? solve(**made, x).weights : std::vector<double>();
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    return all;
+  };
+  const bool divides_nearly = GetParam()->name.find("mean_value") != std::string_view::npos;
+  const std::vector<double> expected = weights_on(0);
+  ASSERT_FALSE(expected.empty());
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    const std::vector<double> found = weights_on(target);
+    const bool is_best = target <= HWY_AVX2; // and wider ones
+    if (is_best && (hwy::SupportedTargets() & HWY_AVX2) != 0 && !divides_nearly) {
+      EXPECT_EQ(found, expected) << hwy::TargetName(target);
+    } else {
+      EXPECT_LT(relative_difference(found, expected), 1e-11) << hwy::TargetName(target);
+    }
+  }
+}
+
 TEST_P(EveryKind, RefusesOpenCages) {
   PolygonMesh open;
   open.positions = golden_cube().positions;
