@@ -50,18 +50,22 @@ PolygonMesh mesh_of_faces(const PolygonMesh& whole, std::span<const Index> faces
 void add_groups(const PolygonMesh& mesh, Index first_face, const QString& prefix,
                 std::vector<NamedPart>& parts) {
   std::map<Index, std::vector<Index>> faces_of;
+  std::vector<Index>* faces = nullptr; // of the group of the face before: most go on with it
   for (Index f = 0; f < mesh.face_groups.size(); ++f) {
-    faces_of[mesh.face_groups[f]].push_back(first_face + f);
+    if (faces == nullptr || mesh.face_groups[f] != mesh.face_groups[f - 1]) {
+      faces = &faces_of[mesh.face_groups[f]];
+    }
+    faces->push_back(first_face + f);
   }
   if (faces_of.size() < 2) {
     return;
   }
-  for (auto& [group, faces] : faces_of) {
+  for (auto& [group, of_group] : faces_of) {
     const QString name = group < mesh.group_names.size()
                              ? QString::fromStdString(mesh.group_names[group])
                              : QString();
     parts.push_back(
-        {prefix + (name.isEmpty() ? QObject::tr("without a name") : name), std::move(faces)});
+        {prefix + (name.isEmpty() ? QObject::tr("without a name") : name), std::move(of_group)});
   }
 }
 
@@ -127,6 +131,15 @@ std::vector<NamedPart> named_parts(const Model& model) {
     first_face += count;
   }
   return parts;
+}
+
+bool has_part(const std::vector<Index>& faces, const NamedPart& part) {
+  if (part.faces.empty() || faces.size() < part.faces.size()) {
+    return part.faces.empty();
+  }
+  // Of many parts each is looked for where it may be, not from the first face on.
+  const auto first = std::ranges::lower_bound(faces, part.faces.front());
+  return std::includes(first, faces.end(), part.faces.begin(), part.faces.end());
 }
 
 std::vector<Index> faces_within(const PolygonMesh& mesh, std::span<const char> vertex_is_chosen) {

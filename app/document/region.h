@@ -76,6 +76,9 @@ struct NamedPart {
   std::vector<Index> faces; ///< of the model's mesh, ascending
 };
 
+/// Whether all of a part's faces are among these, which are ascending.
+bool has_part(const std::vector<Index>& faces, const NamedPart& part);
+
 /// The files, if there are several, and the groups of files that have more than one. In the order
 /// of their faces.
 std::vector<NamedPart> named_parts(const Model& model);

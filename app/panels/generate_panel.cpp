@@ -268,7 +268,7 @@ void GeneratePanel::show_parts() {
   for (NamedPart& part : named_parts(*document.model())) {
     QAction* action = menu->addAction(part.name);
     action->setCheckable(true);
-    action->setChecked(region && std::ranges::includes(region->faces, part.faces));
+    action->setChecked(region && has_part(region->faces, part));
     action->setToolTip(tr("%L1 faces").arg(part.faces.size()));
     connect(action, &QAction::triggered, this,
             [this, part = std::move(part)](bool on) { take_part(part, on); });
@@ -300,7 +300,7 @@ void GeneratePanel::take_part(const NamedPart& part, bool on) {
   }
   QStringList names;
   for (const NamedPart& other : named_parts(*session_.document().model())) {
-    if (std::ranges::includes(faces, other.faces)) {
+    if (has_part(faces, other)) {
       names.append(other.name);
     }
   }

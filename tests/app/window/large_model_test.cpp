@@ -5,6 +5,9 @@
 #include "app/document/model.h"
 #include "window_fixture.h"
 
+#include <QMenu>
+#include <QToolButton>
+
 #include <oneapi/tbb/task_arena.h>
 
 #include <ctime>
@@ -90,10 +93,42 @@ TEST_F(LargeModel, NeverKeepsTheWindowFromAnswering) {
   });
   in_turn("end of drag", [this] { session().editor().end_move("Move"); });
   in_turn("undo", [this] { session().editor().undo_stack().undo(); });
+  in_turn("another kind", [this] {
+    GenerateSettings settings = session().settings();
+    settings.mixed = "green";
+    session().set_settings(settings);
+  });
+  take_tool(Tool::mix);
+  drag({500, 300}, {700, 340});
+  expect_answers("paint a mix");
+  ASSERT_TRUE(document().state().mix);
+  in_turn("undo the mix", [this] { session().editor().undo_stack().undo(); });
+  take_tool(Tool::pull);
+  drag({500, 300}, {520, 310});
+  expect_answers("drag the model");
+  in_turn("keep a pose", [this] { session().editor().add_pose("a"); });
+  in_turn("export", [this] { session().export_model(path("out.ply").toStdString()); });
+  in_turn("save", [this] { session().save_project(path("a.cagewright").toStdString()); });
   in_turn("back to refining", [this] { session().refine(); });
+  in_turn("hide", [this] { trigger("hide"); });
+  in_turn("show all", [this] { trigger("reveal"); });
+  in_turn("isolate", [this] { trigger("isolate"); });
+  in_turn("delete", [this] { trigger("remove"); });
+  change_layers("metal", [](Layers& l) { l.look = SurfaceLook::metal; });
+  change_layers("its own colors", [](Layers& l) { l.look = SurfaceLook::own; });
   take_tool(Tool::paint);
   drag({500, 300}, {700, 340});
   expect_answers("paint");
+  in_turn("undo the paint", [this] { session().editor().undo_stack().undo(); });
+  take_tool(Tool::region);
+  drag({500, 300}, {700, 340});
+  expect_answers("paint a region");
+  drag({2, 2}, {view().width() - 3, view().height() - 3}, Qt::ControlModifier);
+  expect_answers("a lasso");
+  in_turn("parts", [this] {
+    QMetaObject::invokeMethod(find<QToolButton>("region")->menu(), "aboutToShow");
+  });
+  in_turn("project", [this] { session().open(path("a.cagewright").toStdString()); });
   in_turn("another model", [this] { session().open(path("model.ply").toStdString()); });
 }
 
