@@ -691,7 +691,8 @@ private:
 constexpr double default_accuracy = 2e-3;
 constexpr std::size_t usual_unknowns = 4500; // some seconds
 constexpr std::size_t patient_unknowns = 8000;
-constexpr double useless = 0.5; // an error of weights as large as they are
+constexpr double useless =
+    1; // an error of weights as large as they are: tips of spikes have half of it
 
 /// Points a hundredth of the diagonal below the cage, or farther, where a model
 /// may be: below faces, edges and corners.
@@ -807,6 +808,10 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
   const double accuracy = options.accuracy > 0 ? options.accuracy : default_accuracy;
   const std::vector<CageSample> samples = samples_to_check(*surface);
   const std::vector<Vec3> probes = probes_inside(*surface, **green);
+  const Error does_not_come_out = {
+      ErrorCode::invalid_cage,
+      "harmonic coordinates of this cage do not come out: its faces are too thin or "
+      "too sharply folded; make its triangles rounder, or take mean_value coordinates"};
   const auto made_at = [&](std::size_t at,
                            const Progress& share) -> Result<std::shared_ptr<HarmonicCoordinates>> {
     Derivatives derivatives(*surface, **green, PanelMaker(*surface, cut_levels[at]).make());
@@ -814,12 +819,8 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
       return status.error();
     }
     const std::vector<double> errors = derivatives.residuals(samples);
-    if (!std::all_of(errors.begin(), errors.end(),
-                     [](double e) { return e < useless; })) { // or no number
-      return Error{
-          ErrorCode::invalid_cage,
-          "harmonic coordinates of this cage do not come out: its faces are too thin or "
-          "too sharply folded; make its triangles rounder, or take mean_value coordinates"};
+    if (!std::all_of(errors.begin(), errors.end(), [](double e) { return std::isfinite(e); })) {
+      return does_not_come_out;
     }
     return std::make_shared<HarmonicCoordinates>(cage, surface->frame, *green, derivatives,
                                                  options.outside,
@@ -836,16 +837,27 @@ Result<std::shared_ptr<const Coordinates>> harmonic_coordinates(const PolygonMes
     };
     const std::size_t round = level > first_level ? level - first_level : 0;
     Result<std::shared_ptr<HarmonicCoordinates>> fine =
-        made_at(level, progress.part(share(round), share(round + 1)));
+        level > 0 ? made_at(level, progress.part(share(round), share(round + 1))) : coarse;
     if (!fine) {
-      if (fine.error().code == ErrorCode::cancelled || round == 0) {
+      if (fine.error().code == ErrorCode::cancelled || round == 0 ||
+          (*coarse)->error_bound() >= useless) {
         return fine.error();
       }
       return std::shared_ptr<const Coordinates>(*std::move(coarse));
     }
-    (*fine)->set_estimate(difference(**coarse, **fine, probes));
-    if ((*fine)->error_estimate() <= accuracy || level + 1 == cut_levels.size() ||
-        !fits(level + 1)) {
+    // Nothing is coarser than the first: then nothing better is known than on the cage.
+    (*fine)->set_estimate(level > 0 ? difference(**coarse, **fine, probes)
+                                    : (*fine)->error_bound());
+    // The first that it is compared with may err by anything: only what is given counts.
+    const bool is_of_use = (*fine)->error_bound() < useless;
+    const bool is_last = level + 1 == cut_levels.size() || !fits(level + 1);
+    if (is_last && !is_of_use) {
+      if ((*coarse)->error_bound() >= useless) {
+        return does_not_come_out;
+      }
+      return std::shared_ptr<const Coordinates>(*std::move(coarse));
+    }
+    if (is_last || (is_of_use && (*fine)->error_estimate() <= accuracy)) {
       progress(1, "bind");
       return std::shared_ptr<const Coordinates>(*std::move(fine));
     }

@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <limits>
+#include <numeric>
 
 namespace cagewright {
 namespace {
@@ -148,6 +149,47 @@ TEST(PositiveSystem, SolveLeastSquares) {
                   expected(static_cast<Eigen::Index>(u), static_cast<Eigen::Index>(s)), 1e-11);
     }
   }
+}
+
+TEST(Harmonic, TellsAnErrorWhereNothingCoarserIsThere) {
+  const PolygonMesh cage = make_star();
+  const std::size_t triangles = to_triangle_mesh(cage).triangles.size();
+  const Made made = harmonic_coordinates(cage, {.unknowns = 3 * triangles}); // three a triangle
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_GT((*made)->error_estimate(), 1e-3);
+  EXPECT_EQ((*made)->error_estimate(), (*made)->error_bound());
+}
+
+/// At its tip they err by more than half of a weight, elsewhere they do not.
+TEST(Harmonic, ComesOutRoundADentLikeANeedle) {
+  constexpr double wide = 0.05;
+  PolygonMesh cage;
+  cage.positions = {{0, 0, 0},
+                    {1, 0, 0},
+                    {1, 1, 0},
+                    {0, 1, 0},
+                    {0, 0, 1},
+                    {1, 0, 1},
+                    {1, 1, 1},
+                    {0, 1, 1},
+                    {.5 - wide, .5 - wide, 1},
+                    {.5 + wide, .5 - wide, 1},
+                    {.5 + wide, .5 + wide, 1},
+                    {.5 - wide, .5 + wide, 1},
+                    {.5, .5, .2}};
+  cage.add_face({0, 3, 2, 1});
+  for (Index i = 0; i < 4; ++i) {
+    const Index next = (i + 1) % 4;
+    cage.add_face({i, next, next + 4, i + 4});
+    cage.add_face({i + 4, next + 4, next + 8, i + 8});
+    cage.add_face({i + 8, next + 8, 12});
+  }
+  const Made made = harmonic_coordinates(cage, {.accuracy = 0.05});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_GT((*made)->error_bound(), 0.5);
+  EXPECT_LT((*made)->error_estimate(), 0.1);
+  const std::vector<double> weights = solve(**made, Vec3(0.2, 0.2, 0.4)).weights;
+  EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1, 1e-12);
 }
 
 } // namespace
