@@ -16,6 +16,8 @@ struct QuadTask {
   const Start& start;
   const GenerateOptions& options;
   const LimbRings& rings; ///< on the start: edges of the quads, unless the budget does not allow it
+  /// Where limbs come out joined finer voxels are tried: then it need not be the best from these.
+  bool is_first = false;
 };
 
 struct QuadStage {

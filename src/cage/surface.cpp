@@ -45,29 +45,6 @@ struct Made {
   std::optional<Vec3> farthest;
 };
 
-/// Triangles within a budget. Where webs are left it is tried again with webs dearer than other
-/// volume, and the better cage is taken: few vertices may be better spent elsewhere.
-Result<Triangles> triangles_without_webs(const Ground& ground, const Start& start,
-                                         ImproveOptions budget, const Progress& progress) {
-  const auto webbing_of = [&](const Triangles& made) {
-    return ground.between().share_inside(ground.with_image(made.improved.cage));
-  };
-  const auto cost_of = [&](const Triangles& made) {
-    const ImproveReport& report = made.improved.report;
-    return Cost{!report.reached, report.objective * dearer_by(webbing_of(made), 0, 0), 0};
-  };
-  constexpr double first = 0.8; // of the time
-  BestOf<Triangles, decltype(cost_of)> tries(cost_of);
-  if (!tries.add(improve_well_shaped(ground, start.surface, budget, progress.part(0, first))) ||
-      !tries.best().improved.report.reached || !ground.runs().are_left() ||
-      webbing_of(tries.best()) < webbed) {
-    return tries.taken();
-  }
-  budget.between = &ground.between_on_side();
-  tries.add(improve_well_shaped(ground, start.surface, budget, progress.part(first, 1)));
-  return tries.taken();
-}
-
 Result<Made> triangles_on(const Ground& ground, const Start& start, const GenerateOptions& options,
                           const Progress& progress) {
   ImproveOptions budget = ground.budget(start.clearance);
@@ -79,13 +56,16 @@ Result<Made> triangles_on(const Ground& ground, const Start& start, const Genera
     budget.parts = rings.parts;
     budget.bands = rings.bands;
   }
+  const auto well_shaped = [&](const ImproveOptions& asked, const Progress& share) {
+    return improve_well_shaped(ground, start.surface, asked, share);
+  };
   constexpr double usual = 0.9; // of the time, with rings
   const auto run = [&](double from) {
     const Progress share =
         progress.part(from == 0 ? 0 : usual, from == 0 && rings.count > 0 ? usual : 1);
     return options.max_gap > 0
                ? improve_to_gap(ground, start.surface, budget, options.max_gap, share)
-               : triangles_without_webs(ground, start, budget, share);
+               : improve_without_webs(ground, budget, well_shaped, share);
   };
   Result<Triangles> made = run(0);
   if (rings.count > 0 && made && !made->improved.report.reached) {
@@ -100,14 +80,15 @@ Result<Made> triangles_on(const Ground& ground, const Start& start, const Genera
               std::move(made->improved.report), made->gap, made->farthest};
 }
 
+/// \param is_first  see QuadTask
 Result<Made> quads_on(const Ground& ground, const Start& start, const GenerateOptions& options,
-                      Stopwatch& watch, const Progress& progress) {
+                      bool is_first, Stopwatch& watch, const Progress& progress) {
   const LimbRings rings =
       find_limb_rings(start.surface, ground.model_here(), vertices_allowed(options),
                       ground.joints_here(), progress.part(0, limbs_found));
   watch.lap("limbs");
-  Result<QuadStage> stage =
-      make_quads_in_budget({ground, start, options, rings}, progress.part(limbs_found, 1));
+  Result<QuadStage> stage = make_quads_in_budget({ground, start, options, rings, is_first},
+                                                 progress.part(limbs_found, 1));
   if (!stage) {
     return stage.error();
   }
@@ -149,7 +130,9 @@ Result<Surface> make_on(const Ground& ground, const GenerateOptions& options, co
   const double end = start->rival ? rivalled : 1;
   const double checking = end - (1 - improved);
   const Progress improving = progress.part(begun, checking);
-  Result<Made> made = options.quads ? quads_on(ground, *start, options, watch, improving)
+  const bool is_first = start->method == Method::envelope && how.envelope.resolution == 0 &&
+                        how.envelope_vertices == 0 && options.max_gap == 0;
+  Result<Made> made = options.quads ? quads_on(ground, *start, options, is_first, watch, improving)
                                     : triangles_on(ground, *start, options, improving);
   if (!made) {
     return made.error();

@@ -7,6 +7,7 @@
 #include <cagewright/core/progress.h>
 #include <cagewright/core/result.h>
 
+#include <functional>
 #include <optional>
 
 namespace cagewright {
@@ -26,6 +27,16 @@ struct Triangles {
 /// Errors: those of improve(). Cost: at most three runs of improve().
 Result<Triangles> improve_well_shaped(const Ground& ground, TriangleView start,
                                       const ImproveOptions& budget, const Progress& progress = {});
+
+/// What makes triangles within a budget.
+using Improver = std::function<Result<Triangles>(const ImproveOptions& budget, const Progress&)>;
+
+/// Triangles within a budget. Where webs are left it is tried again with webs dearer than other
+/// volume, and the better cage is taken: few vertices may be better spent elsewhere.
+///
+/// Errors: those of the improver, which is run twice at most.
+Result<Triangles> improve_without_webs(const Ground& ground, ImproveOptions budget,
+                                       const Improver& improver, const Progress& progress = {});
 
 /// Whether a gap is above the clearance, so that a cage may keep both. Errors: invalid_option.
 Status can_keep_gap(double max_gap, double clearance);

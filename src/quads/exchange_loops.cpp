@@ -34,6 +34,9 @@ public:
     fill(now, progress);
     settle(now, 2 * options_.settle);
     for (int round = 0; round < options_.rounds && !progress.cancelled(); ++round) {
+      if (options_.dearest > 0 && now.value > options_.dearest) {
+        break;
+      }
       progress(static_cast<double>(round) / options_.rounds, "exchange edge loops");
       Candidate next = now;
       if (!put_in(next, 1.25)) {

@@ -15,6 +15,8 @@ struct ExchangeLoopsOptions {
   int tries = 3;       ///< of the loops that look best so many are tried
   int settle = 5;      ///< steps after a try
   int rounds = 8;      ///< exchanges at most
+  /// Rounds end while the objective is above this. 0: never.
+  double dearest = 0;
 };
 
 /// Takes loops out of a cage that is too large for the budget, cheapest first, and puts loops into

@@ -151,7 +151,12 @@ Result<Quadrangulated> make_grid_quads(const ModelSurface& surface, const GridQu
   constexpr int work = 800;
   loops.rounds = std::clamp(work / most, 1, 8);
   loops.tries = std::clamp(work / most, 1, 3);
-  exchange_loops(cage, guard, objective, loops, progress.part(0.3, 0.95));
+  constexpr double most_gain = 1.3; // of all rounds
+  loops.dearest = most_gain * options.dearest;
+  const double value = exchange_loops(cage, guard, objective, loops, progress.part(0.3, 0.95));
+  if (loops.dearest > 0 && value > loops.dearest) {
+    return Error{ErrorCode::no_valid_cage, "blocks do not fit the model"};
+  }
   split_unfit(cage, options.quads.limits);
   settle_shapes(cage, guard, objective, settle, progress.part(0.95, 1));
   if (progress.cancelled()) {

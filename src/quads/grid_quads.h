@@ -15,6 +15,9 @@ struct GridQuadOptions {
   bool half = false;  ///< the model is half of a symmetric one, and so is the cage
   /// Given up when the looseness() is above this before loops are exchanged. 0: never.
   double loosest = 0;
+  /// Given up where the exchange of loops would have to lower the objective to less than this by
+  /// more than it does. 0: never.
+  double dearest = 0;
 };
 
 /// The surface of a grid_layout(), tightened, with edge loops put where they pay: all faces are

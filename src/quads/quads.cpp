@@ -66,6 +66,9 @@ struct Way {
   double room = 1;   ///< how far the cage moves off the model meanwhile, in what the options say
   double lone = 4;   ///< what a triangle costs: see FaceWishes
   bool caps = false; ///< limbs end in a face where they ended in triangles
+  /// By what a step may raise the objective for room that there should be already: where there is
+  /// none to be had the cage is creased ever more, but some faces find their quads only by that.
+  double most_rise = std::numeric_limits<double>::infinity();
 };
 
 /// Pairs and tiles the faces of a cage that has room, and moves its vertices, in rounds from much
@@ -105,7 +108,10 @@ QuadCage with_quads(QuadCage cage, const Setting& setting, const Way& way,
     cage.renumber_faces();
     RelaxQuadsOptions settle;
     settle.keep = options.clearance + slack * way.room * options.room;
-    settle.steps = is_last ? 8 : 4;
+    settle.steps = is_last ? 24 : 4;
+    if (round > 0) {
+      settle.most_rise = way.most_rise;
+    }
     relax_quads(cage, guard, setting.objective, settle, part.part(0.5, 1));
   }
   split_unfit(cage, options.limits);
@@ -147,10 +153,11 @@ double cost_of(const QuadCage& cage, const Setting& setting) {
 /// by side; more while the best is not much like what it was made of; of large cages fewer. What
 /// has fewer quads than triangles is taken only if all have.
 QuadCage best_of_ways(const QuadCage& start, const Setting& setting, const Progress& progress) {
-  constexpr std::array ways = {Way{0.6, 4, true}, Way{0.4, 4}, Way{0.6, 8, true}, Way{1, 12}};
+  constexpr std::array ways = {Way{0.6, 4, true}, Way{0.4, 4}, Way{0.6, 8, true, 0.05},
+                               Way{1, 12, false, 0.05}};
   constexpr std::size_t at_once = 2;
   constexpr std::size_t most_faces = 1200; // of all tries together
-  constexpr double good_enough = 1.15;     // times what the triangles cost
+  constexpr double good_enough = 1.2;      // times what the triangles cost
   constexpr double few = 0.5;
   const std::size_t most = std::clamp<std::size_t>(most_faces / start.face_end(), 1, ways.size());
   const double enough = good_enough * objective_of(start, setting);

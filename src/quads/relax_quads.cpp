@@ -104,9 +104,10 @@ public:
         break; // what was made last is not to be used
       }
       const double lower = total(next);
-      // What is to be kept away further than before may cost something.
+      // What is to be kept away further than before may cost something, though not anything: where
+      // there is no room to be had the cage would be creased ever more.
       const bool makes_room = keep_ > 2 * guard_.clearance();
-      if (lower < value || makes_room) {
+      if (lower < value || (makes_room && lower < (1 + options_.most_rise) * value)) {
         const StepGain step_gain{value - lower, value - total(goal)};
         at_ = next;
         cage_.set_positions(at_);

@@ -6,6 +6,8 @@
 #include "quads/quad_guard.h"
 #include <cagewright/core/progress.h>
 
+#include <limits>
+
 namespace cagewright {
 
 struct RelaxQuadsOptions {
@@ -15,6 +17,8 @@ struct RelaxQuadsOptions {
   /// The distance from the model that the steps aim at, in diagonals: at least the guard's
   /// clearance. More than that makes room.
   double keep = 0;
+  /// By what share of itself a step may raise the objective where it makes room.
+  double most_rise = std::numeric_limits<double>::infinity();
   // What quads should look like, in weights of the shape of triangles; l^2 is the mean of the
   // squared diagonals.
   double even = 2;        ///< |a - b + c - d|^2 / l^2 of the corners: 0 for a parallelogram

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 namespace cagewright {
@@ -43,6 +44,25 @@ TEST(RelaxQuads, ComesNearerToTheModelButNotNearerThanAsked) {
   relax_quads(scene.cage, scene.guard, scene.objective, options);
   EXPECT_LT(volume(), before);
   scene.expect_sound();
+}
+
+TEST(RelaxQuads, MakesRoomAtNoHigherPriceThanItMay) {
+  const auto steps = [](int count, double most_rise) {
+    RelaxQuadsOptions options;
+    options.steps = count;
+    options.keep = 0.3;
+    options.most_rise = most_rise;
+    return options;
+  };
+  QuadScene free;
+  relax_quads(free.cage, free.guard, free.objective, {.steps = 30});
+  QuadScene held = free;
+  const double before = relax_quads(free.cage, free.guard, free.objective, {.steps = 0});
+  EXPECT_GT(relax_quads(free.cage, free.guard, free.objective,
+                        steps(8, std::numeric_limits<double>::infinity())),
+            1.05 * before);
+  EXPECT_LE(relax_quads(held.cage, held.guard, held.objective, steps(8, 0)), before * (1 + 1e-12));
+  held.expect_sound();
 }
 
 TEST(RelaxQuads, KeepsTheFaces) {
