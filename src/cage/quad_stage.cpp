@@ -3,6 +3,7 @@
 #include "cage/budget.h"
 #include "cage/merit.h"
 #include "cage/triangle_stage.h"
+#include "core/maths.h"
 #include "quads/grid_quads.h"
 #include "quads/quad_merit.h"
 #include <cagewright/mesh/measures.h>
@@ -101,16 +102,21 @@ public:
   [[nodiscard]] Cost cost_of(const QuadStage& stage) const {
     const double webbing = webbing_of(to_triangle_mesh(stage.made.cage));
     return {!stage.report.reached,
-            (volume_of(stage.made.cage, ground_.extent()) + looseness_of(stage)) * (1 + webbing) *
+            objective_of(stage.made.cage) * (1 + webbing) *
                 dearer_by_shapes(stage.made.report, shape_limits::enough_quads)};
   }
 
   /// The least that quads made of them might cost.
   [[nodiscard]] Cost cost_of(const Triangles& made) const {
-    const PolygonMesh cage(made.improved.cage);
     return {!made.improved.report.reached,
-            (volume_of(cage, ground_.extent()) + looseness(cage, ground_.surface(), quads_)) *
-                (1 + webbing_of(made.improved.cage))};
+            objective_of(PolygonMesh(made.improved.cage)) * (1 + webbing_of(made.improved.cage))};
+  }
+
+  /// Of the quads themselves, not of the triangles they were made of: see ImproveReport.
+  void put_objective(QuadStage& stage) const {
+    const double sides = ground_.is_half() ? 2 : 1;
+    stage.report.objective =
+        sides * objective_of(stage.made.cage) / maths::cube(ground_.diagonal());
   }
 
   /// Whether limbs are joined so that another start will be tried.
@@ -123,6 +129,10 @@ public:
   }
 
 private:
+  [[nodiscard]] double objective_of(const PolygonMesh& cage) const {
+    return volume_of(cage, ground_.extent()) + looseness(cage, ground_.surface(), quads_);
+  }
+
   const Ground& ground_;
   QuadOptions quads_;
   SpaceBetween between_;
@@ -386,6 +396,24 @@ Result<QuadStage> best_quads(const QuadTask& task, const QuadOptions& quads, con
   return is_better ? blocks : pairs;
 }
 
+/// The best, and where its faces are ill shaped another try with twice the weight on shape.
+Result<QuadStage> well_shaped_quads(const QuadTask& task, QuadOptions quads, const Judge& judge,
+                                    const Progress& progress) {
+  TriangleTries tries(task);
+  constexpr double usual = 0.9; // of the time: hardly ever is there another try
+  Result<QuadStage> made = best_quads(task, quads, judge, tries, progress.part(0, usual));
+  if (!made || !made->report.reached || task.options.max_gap > 0 || is_well_shaped(*made) ||
+      !tries.are_left() || (task.is_first && judge.is_webbed(*made))) {
+    return made;
+  }
+  constexpr double dearer = 2;
+  quads.shape *= dearer;
+  Result<QuadStage> again = paired_quads_of(0, task, true, quads, tries, progress.part(usual, 1));
+  const bool is_cancelled = !again && again.error().code == ErrorCode::cancelled;
+  return is_cancelled || (again && judge.cost_of(*again) < judge.cost_of(*made)) ? std::move(again)
+                                                                                 : std::move(made);
+}
+
 } // namespace
 
 Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& progress) {
@@ -401,19 +429,11 @@ Result<QuadStage> make_quads_in_budget(const QuadTask& task, const Progress& pro
     return judge.webbing_of({{cage.positions.begin(), cage.positions.end()},
                              {cage.triangles.begin(), cage.triangles.end()}});
   };
-  TriangleTries tries(task);
-  constexpr double usual = 0.9; // of the time: hardly ever is there another try
-  Result<QuadStage> made = best_quads(task, quads, judge, tries, progress.part(0, usual));
-  if (!made || !made->report.reached || task.options.max_gap > 0 || is_well_shaped(*made) ||
-      !tries.are_left() || (task.is_first && judge.is_webbed(*made))) {
-    return made;
+  Result<QuadStage> made = well_shaped_quads(task, quads, judge, progress);
+  if (made) {
+    judge.put_objective(*made);
   }
-  constexpr double dearer = 2;
-  quads.shape *= dearer;
-  Result<QuadStage> again = paired_quads_of(0, task, true, quads, tries, progress.part(usual, 1));
-  const bool is_cancelled = !again && again.error().code == ErrorCode::cancelled;
-  return is_cancelled || (again && judge.cost_of(*again) < judge.cost_of(*made)) ? std::move(again)
-                                                                                 : std::move(made);
+  return made;
 }
 
 } // namespace cagewright

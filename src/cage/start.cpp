@@ -60,6 +60,9 @@ std::vector<StartTry> starts_of_finer_voxels(const GenerateOptions& options, int
     start.envelope.resolution = std::max(static_cast<int>(std::lround(times * resolution)), least);
     start.envelope.fill = narrow_handle;
   }
+  if (options.quads) {
+    starts.resize(1); // they take so much longer, and blocks follow gaps by themselves
+  }
   return starts;
 }
 

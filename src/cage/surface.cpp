@@ -10,6 +10,7 @@
 #include "cage/start.h"
 #include "cage/triangle_stage.h"
 #include "cage/unit_frame.h"
+#include "quads/quad_merit.h"
 #include <cagewright/mesh/triangulate.h>
 #include <cagewright/validate/validate_cage.h>
 #include <cagewright/validate/webbing.h>
@@ -250,7 +251,14 @@ private:
     if (!is_within_budget(made.cage)) {
       return {true, static_cast<double>(made.cage.faces.positions.size()), 0};
     }
-    return {false, made.cage.objective * dearer_by(made.webbing, made.cage.genus, made.known), 0};
+    double shapes = 1;
+    if (const std::optional<QuadReport>& quads = made.cage.quads) {
+      constexpr double for_thin = 5; // another start, unlike other quads of one, may do without
+      shapes = dearer_by_shapes(*quads, shape_limits::enough_quads) *
+               dearer_by_thin(quads->thin, for_thin);
+    }
+    return {false,
+            made.cage.objective * shapes * dearer_by(made.webbing, made.cage.genus, made.known), 0};
   }
 
   bool add(Result<Surface> made) {
