@@ -293,7 +293,7 @@ Result<GeneratedCage> make_surface(TriangleView model, const GenerateOptions& op
     return frame.error();
   }
   const StartTry start = first_start(options);
-  constexpr double usual = 0.95; // of the time: hardly ever is there a third start
+  constexpr double usual = 0.8; // of the time: seldom is there a third start, or a fifth
   constexpr double first = rivalled * usual;
   Tries tries(model, options, mirroring);
   if (!tries.make(start, progress.part(0, usual))) {
@@ -325,6 +325,9 @@ Result<GeneratedCage> make_surface(TriangleView model, const GenerateOptions& op
       return tries.taken();
     }
     done = then;
+    if (tries.best().cage.bridges > 0) {
+      break; // what joins pieces that are apart is a web, too, however fine the voxels are
+    }
     least_webbing = plainly_webbed;
   }
   for (const StartTry& simpler : starts_of_fewer_handles(options)) {
